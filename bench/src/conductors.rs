@@ -11,25 +11,12 @@ use microfacet_sampler::{
 
 use crate::clock::Calls;
 use crate::inputs::Inputs;
+use crate::rival::{Rival, lobe};
 use crate::rivals::conductor::GgxConductor;
-use crate::sampler::{lobe, stored};
 use crate::settings::{GAMMA, SIGMA};
 
 /// Reflectance at normal incidence, of Schlick's.
 const F0: [f32; 3] = [0.9, 0.7, 0.3];
-
-/// One conductor.
-pub(crate) struct Timed<'a> {
-    /// Its name.
-    pub(crate) name: &'static str,
-    /// The shape; roughness is [`SIGMA`].
-    pub(crate) gamma: f64,
-    /// Bytes of table that lookups touch.
-    pub(crate) bytes: usize,
-    /// Bytes of those tables as stored in a file.
-    pub(crate) stored: usize,
-    pub(crate) calls: Calls<'a>,
-}
 
 /// Names that figures refer to: the hand-written GGX and the table, with Schlick's reflectance and
 /// with Fresnel's.
@@ -99,23 +86,18 @@ pub(crate) fn schlick_fresnel() -> ConductorFresnel {
 }
 
 /// All conductors: with Schlick's reflectance, which costs little, and with Fresnel's of gold.
-pub(crate) fn conductors<'a>(set: &Tables, hits: &'a Hits) -> Vec<Timed<'a>> {
+pub(crate) fn conductors<'a>(set: &Tables, hits: &'a Hits) -> Vec<Rival<Calls<'a>>> {
     let ggx = || Ggx::new(SIGMA).expect("a constant");
-    let table = || lobe(set, GAMMA);
+    let table = |fresnel| hits.of_lobe(lobe(set, GAMMA), fresnel);
     let gold = ConductorFresnel::from(Metal::Gold);
-    let form = |name, gamma, calls| Timed { name, gamma, bytes: 0, stored: 0, calls };
-    let (bytes, stored) = (table().bytes(), stored(set));
-    let of_table = |name, fresnel| Timed {
-        bytes,
-        stored,
-        ..form(name, GAMMA, hits.of_lobe(table(), fresnel))
-    };
+    let schlick = schlick_fresnel();
+    let form = Rival::form;
     vec![
         form(SCHLICK[0], 2.0, hits.by_hand_schlick()),
-        form("Ggx of the sampler crate, Schlick", 2.0, hits.of_lobe(ggx(), schlick_fresnel())),
-        of_table(SCHLICK[1], schlick_fresnel()),
+        form("Ggx of the sampler crate, Schlick", 2.0, hits.of_lobe(ggx(), schlick)),
+        form(SCHLICK[1], GAMMA, table(schlick)).of(set),
         form(EXACT[0], 2.0, hits.by_hand(move |cos| gold.at(cos))),
         form("Ggx of the sampler crate, exact Fresnel", 2.0, hits.of_lobe(ggx(), gold)),
-        of_table(EXACT[1], gold),
+        form(EXACT[1], GAMMA, table(gold)).of(set),
     ]
 }

@@ -6,7 +6,7 @@ use microfacet_model::{
 };
 
 use crate::inputs::Inputs;
-use crate::masking::Evaluate;
+use crate::rival::{Evaluate, Rival};
 use crate::sampler::{Check, Density, Sampler};
 use crate::settings::SIGMA;
 
@@ -41,11 +41,12 @@ pub(crate) fn truth(gamma: f64) -> StudentT {
 
 /// The error of a sampler: how far the CDFs along and across the plane of incidence are from their
 /// exact values, the larger of the two. `None` where the random numbers do not correspond to CDFs.
-pub(crate) fn sampler_error(sampler: &Sampler, inputs: &Inputs) -> Option<Error> {
+pub(crate) fn sampler_error(rival: &Rival<Sampler>, inputs: &Inputs) -> Option<Error> {
+    let sampler = &rival.run;
     if matches!(sampler.check, Check::Distribution) {
         return None;
     }
-    let truth = truth(sampler.gamma);
+    let truth = truth(rival.gamma);
     let mut normals = vec![Vec3::ZERO; inputs.views.len()];
     (sampler.draw)(&inputs.views, &inputs.numbers, &mut normals);
     let one = |((v, u), m): ((&Vec3, &[f32; 2]), &Vec3)| {
@@ -76,13 +77,26 @@ fn cdfs(truth: &StudentT, v: DVec3, m: DVec3) -> [f64; 2] {
 }
 
 /// The error of a form of G1, absolute.
-pub(crate) fn masking_error(evaluate: &Evaluate, gamma: f64, inputs: &Inputs) -> Error {
-    let truth = truth(gamma);
-    let mut g1 = vec![0.0; inputs.views.len()];
-    evaluate(&inputs.views, &mut g1);
-    Error::of(
-        inputs.views.iter().zip(g1).map(|(w, g1)| (f64::from(g1) - truth.g1(w.as_dvec3())).abs()),
-    )
+pub(crate) fn masking_error(rival: &Rival<Evaluate>, inputs: &Inputs) -> Error {
+    let truth = truth(rival.gamma);
+    let error = |(w, g1): (&Vec3, f32)| (f64::from(g1) - truth.g1(w.as_dvec3())).abs();
+    Error::of(inputs.views.iter().zip(evaluated(rival, inputs)).map(error))
+}
+
+/// The error of a form of D, relative.
+pub(crate) fn density_error(rival: &Rival<Evaluate>, normals: &Inputs) -> Error {
+    let truth = truth(rival.gamma);
+    Error::of(normals.views.iter().zip(evaluated(rival, normals)).filter_map(|(m, d)| {
+        let exact = truth.d(m.as_dvec3());
+        // Less is subnormal in single precision.
+        (exact > 1e-37).then(|| (f64::from(d) / exact - 1.0).abs())
+    }))
+}
+
+fn evaluated(rival: &Rival<Evaluate>, inputs: &Inputs) -> Vec<f32> {
+    let mut values = vec![0.0; inputs.views.len()];
+    (rival.run)(&inputs.views, &mut values);
+    values
 }
 
 /// The mean over views of the variance of a white-furnace estimator: the weight f cos/pdf of one
@@ -91,26 +105,21 @@ pub(crate) fn masking_error(evaluate: &Evaluate, gamma: f64, inputs: &Inputs) ->
 /// Weights are the model's in double precision, so that samplers differ by their normals alone.
 /// `views` of the inputs take part, with `draws` of the numbers each.
 pub(crate) fn furnace_variance(
-    sampler: &Sampler,
+    rival: &Rival<Sampler>,
     inputs: &Inputs,
     views: usize,
     draws: usize,
 ) -> f64 {
-    let truth = truth(sampler.gamma);
+    let (sampler, truth) = (&rival.run, truth(rival.gamma));
     let mut normals = vec![Vec3::ZERO; draws];
     let n = draws as f64;
     let mut total = 0.0;
     let views = &inputs.views[..views.min(inputs.views.len())];
     for (i, v) in views.iter().enumerate() {
         // Other numbers for every view; the last few views may reuse the first numbers.
-        let numbers: Vec<[f32; 2]> = inputs
-            .numbers
-            .iter()
-            .copied()
-            .cycle()
-            .skip(i * draws % inputs.numbers.len())
-            .take(draws)
-            .collect();
+        let first = i * draws % inputs.numbers.len();
+        let numbers: Vec<[f32; 2]> =
+            inputs.numbers.iter().copied().cycle().skip(first).take(draws).collect();
         (sampler.draw)(&vec![*v; draws], &numbers, &mut normals);
         let v = v.as_dvec3();
         let g1 = truth.g1(v);
@@ -131,10 +140,10 @@ pub(crate) fn furnace_variance(
                 Density::Visible | Density::Bounded(_) => share * g2 / g1,
             }
         };
-        let (sum, squares) = normals
-            .iter()
-            .map(weight)
-            .fold((0.0, 0.0), |(sum, squares), weight| (sum + weight, squares + weight * weight));
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for weight in normals.iter().map(weight) {
+            (sum, squares) = (sum + weight, squares + weight * weight);
+        }
         total += (squares - sum * sum / n) / (n - 1.0).max(1.0);
     }
     total / views.len().max(1) as f64
@@ -145,9 +154,9 @@ mod tests {
     use microfacet_model::statistics::{sidak, test_visible_normals};
 
     use super::*;
-    use crate::masking::maskings;
     use crate::sampler::samplers;
     use crate::tables::Slices;
+    use crate::values::maskings;
 
     const SAMPLES: usize = 20_000;
     /// For samplers that take their numbers from a stream, which must not repeat.
@@ -163,14 +172,14 @@ mod tests {
             let p = views.map(|v| {
                 let draw = |u| {
                     let mut m = [Vec3::ZERO];
-                    (sampler.draw)(&[v.as_vec3()], &[u], &mut m);
+                    (sampler.run.draw)(&[v.as_vec3()], &[u], &mut m);
                     m[0]
                 };
-                let streamed = matches!(sampler.check, Check::Distribution);
+                let streamed = matches!(sampler.run.check, Check::Distribution);
                 let samples = if streamed { STREAMED } else { SAMPLES };
                 test_visible_normals(&truth(sampler.gamma), v, samples, 7, draw).p()
             });
-            if !sampler.draws_visible_normals() {
+            if !sampler.run.draws_visible_normals() {
                 // The difference shows where the view is oblique but does not graze.
                 assert!(p[1] < level, "{}: {p:?}", sampler.name);
             } else {
@@ -184,7 +193,7 @@ mod tests {
         let (slices, inputs) = (Slices::bake(), Inputs::new(1, 2000));
         for sampler in samplers(&slices, 1) {
             let Some(error) = sampler_error(&sampler, &inputs) else { continue };
-            let most = match &sampler.name[..] {
+            let most = match sampler.name {
                 name if name.starts_with("bilinear") => 5e-3,
                 "table, default, f16" => 2e-3,
                 "table, draft" => 3e-4,
@@ -195,8 +204,8 @@ mod tests {
             assert!(error.max < most && error.rms <= error.max, "{}: {error:?}", sampler.name);
         }
         for masking in maskings(&slices) {
-            let error = masking_error(&masking.evaluate, masking.gamma, &inputs);
-            let most = match &masking.name[..] {
+            let error = masking_error(&masking, &inputs);
+            let most = match masking.name {
                 "Beckmann, rational fit" | "rational approximation (eq. 22-23)" => 1e-2,
                 "table, default, f16" => 1e-3,
                 _ => 4e-6,

@@ -3,18 +3,21 @@
 use std::hint::black_box;
 use std::time::Instant;
 
+use serde::Serialize;
+
 use microfacet_sampler::{MicrofacetDistribution, Tables};
 use microfacet_tables::Kind;
 
 use crate::paper::Approximation;
+use crate::rival::lobe;
 use crate::rows::{Quantity, Row};
-use crate::sampler::{BATCH, CAPS, INVERSION, INVERSION_SUM, lobe};
+use crate::sampler::{BATCH, CAPS, INVERSION, INVERSION_SUM};
 use crate::settings::{GAMMA, SIGMA, Settings};
 use crate::tables::{Slices, TABLE};
-use crate::{clock, conductors, masking};
+use crate::{clock, conductors, values};
 
 /// One figure with its limit and its goal; smaller is better.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Serialize)]
 pub(crate) struct Figure {
     /// What it compares.
     pub(crate) name: &'static str,
@@ -26,6 +29,12 @@ pub(crate) struct Figure {
     pub(crate) aim: f64,
     /// The measured value; `None` where a rival is missing.
     pub(crate) reached: Option<f64>,
+}
+
+impl Figure {
+    pub(crate) fn ratio(name: &'static str, must: f64, aim: f64, reached: Option<f64>) -> Self {
+        Self { name, unit: "", must, aim, reached }
+    }
 }
 
 /// The limit and the goal of a conductor's two calls at a hit, for gamma >= 1.8.
@@ -42,75 +51,47 @@ pub(crate) fn figures(
     let ns = |quantity, name: &str| {
         rows.iter().find(|row| row.quantity == quantity && row.name == name).map(|row| row.ns)
     };
-    let ratio = |quantity, a, b| Some(ns(quantity, a)? / ns(quantity, b)?);
-    let normals = |a, b| ratio(Quantity::Normal, a, b);
-    let conductor = |[rival, table]: [&'static str; 2]| ratio(Quantity::Conductor, table, rival);
+    let over = |quantity, a, b| Some(ns(quantity, a)? / ns(quantity, b)?);
+    let normals = |a, b| over(Quantity::Normal, a, b);
+    let conductor = |name, [rival, table]: [&'static str; 2]| {
+        let reached = over(Quantity::Conductor, table, rival);
+        Figure::ratio(name, CONDUCTOR_MUST, CONDUCTOR_AIM, reached)
+    };
     let worst =
         |error: fn(&Approximation) -> f64| approximation.iter().map(error).fold(0.0, f64::max);
-    let bytes = lobe(&slices.default, GAMMA).bytes() as f64;
-    let figure = |name, unit, must, aim, reached| Figure { name, unit, must, aim, reached };
+    let g1_errors = worst(|at| at.table_error.abs()) / worst(|at| at.rational_error.abs());
+    let kibibytes = lobe(slices.default(), GAMMA).bytes() as f64 / 1024.0;
+    // Over shapes between the nodes of the general set.
+    let lobe_ns = median_ns(settings, |i| {
+        let gamma = black_box(2.1 + 0.37 * (i % 40) as f64);
+        slices.whole().student_t(black_box(SIGMA), gamma).expect("all gamma are covered")
+    });
+    let embedded_ns = median_ns(settings, |_| Tables::embedded());
+    let ratio = Figure::ratio;
+    let (of_caps, sums) = ("sample, table / GGX spherical caps", INVERSION_SUM);
+    let g1 = over(Quantity::G1, TABLE, values::GGX);
     vec![
-        figure("sample, table / GGX spherical caps", "", 1.3, 1.0, normals(TABLE, CAPS)),
-        figure("sample_batch, table / GGX spherical caps", "", 0.6, 0.35, normals(BATCH, CAPS)),
-        figure(
-            "g1, table / GGX closed form",
-            "",
-            2.0,
-            1.2,
-            ratio(Quantity::G1, TABLE, masking::GGX),
-        ),
-        figure(
-            "conductor, Schlick, table / GGX by hand",
-            "",
-            CONDUCTOR_MUST,
-            CONDUCTOR_AIM,
-            conductor(conductors::SCHLICK),
-        ),
-        figure(
-            "conductor, exact Reflectance, table / GGX by hand",
-            "",
-            CONDUCTOR_MUST,
-            CONDUCTOR_AIM,
-            conductor(conductors::EXACT),
-        ),
-        figure(
-            "sample, table / inversion, any gamma",
-            "",
-            1.0 / 20.0,
-            1.0 / 40.0,
-            normals(TABLE, INVERSION),
-        ),
-        figure(
-            "sample, table / inversion, integer gamma only",
-            "",
-            1.0 / 20.0,
-            1.0 / 40.0,
-            normals(TABLE, INVERSION_SUM),
-        ),
-        figure(
+        ratio(of_caps, 1.3, 1.0, normals(TABLE, CAPS)),
+        ratio("sample_batch, table / GGX spherical caps", 0.6, 0.35, normals(BATCH, CAPS)),
+        ratio("g1, table / GGX closed form", 2.0, 1.2, g1),
+        conductor("conductor, Schlick, table / GGX by hand", conductors::SCHLICK),
+        conductor("conductor, exact Fresnel, table / GGX by hand", conductors::EXACT),
+        ratio("sample, table / inversion, any gamma", 0.05, 0.025, normals(TABLE, INVERSION)),
+        ratio("sample, table / inversion, integer gamma only", 0.05, 0.025, normals(TABLE, sums)),
+        ratio(
             "CDF error, default tables, gamma >= 1.8",
-            "",
             1e-4,
             2e-5,
-            Some(certified(&slices.whole)),
+            Some(certified(slices.whole())),
         ),
-        figure(
-            "G1 error, table / rational approximation",
-            "",
-            1e-2,
-            1e-3,
-            Some(worst(|at| at.table_error.abs()) / worst(|at| at.rational_error.abs())),
-        ),
-        figure("tables of a lobe", "KiB", 32.0, 16.0, Some(bytes / 1024.0)),
-        figure(
-            "a lobe from tables",
-            "us",
-            50.0,
-            10.0,
-            Some(1e-3 * lobe_ns(&slices.whole, settings)),
-        ),
+        ratio("G1 error, table / rational approximation", 1e-2, 1e-3, Some(g1_errors)),
+        Figure { unit: "KiB", ..ratio("tables of a lobe", 32.0, 16.0, Some(kibibytes)) },
+        Figure { unit: "us", ..ratio("a lobe from tables", 50.0, 10.0, Some(1e-3 * lobe_ns)) },
         // No stricter goal: this happens once per process.
-        figure("the embedded set, ready", "ms", 1.0, 1.0, Some(1e-6 * embedded_ns(settings))),
+        Figure {
+            unit: "ms",
+            ..ratio("the embedded set, ready", 1.0, 1.0, Some(1e-6 * embedded_ns))
+        },
     ]
 }
 
@@ -124,23 +105,11 @@ fn certified(set: &Tables) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The median time of decoding the compiled-in set.
-fn embedded_ns(settings: &Settings) -> f64 {
-    let times = (0..settings.rounds.max(40)).map(|_| {
-        let start = Instant::now();
-        black_box(Tables::embedded());
-        start.elapsed().as_nanos() as f64
-    });
-    clock::median(times.collect())
-}
-
-/// The median time to make a lobe from tables, over shapes between the nodes of the general set.
-fn lobe_ns(set: &Tables, settings: &Settings) -> f64 {
+/// The median time of single calls, which are numbered.
+fn median_ns<T>(settings: &Settings, call: impl Fn(usize) -> T) -> f64 {
     let times = (0..settings.rounds.max(40)).map(|i| {
-        let gamma = 2.1 + 0.37 * (i % 40) as f64;
         let start = Instant::now();
-        black_box(set.student_t(black_box(SIGMA), black_box(gamma)))
-            .expect("all gamma are covered");
+        black_box(call(i));
         start.elapsed().as_nanos() as f64
     });
     clock::median(times.collect())

@@ -8,15 +8,13 @@
 mod cliffs;
 mod clock;
 mod conductors;
-mod csv;
-mod densities;
 mod error;
 mod figures;
 mod files;
 mod inputs;
-mod masking;
 mod paper;
 mod plot;
+mod rival;
 mod rivals;
 mod rows;
 mod sampler;
@@ -24,6 +22,7 @@ mod settings;
 mod sweep;
 mod tables;
 mod terminal;
+mod values;
 
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
@@ -32,11 +31,11 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use microfacet_sampler::Tables;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::inputs::COUNT;
 use crate::paper::Paper;
-use crate::settings::Settings;
+use crate::settings::{GAMMA, SIGMA, Settings};
 use crate::tables::Slices;
 
 /// Time the samplers and the forms of G1, and measure the error of each.
@@ -122,9 +121,12 @@ fn run(Args { part, options }: Args) -> Result<(), Failure> {
         std::fs::create_dir_all(folder)
             .map_err(|why| Failure(format!("making the folder {}: {why}", folder.display())))?;
     }
-    let Results { files, text, json } = match part {
-        Some(Part::Paper) => only_paper(&settings, options.out.is_some())?,
-        None => everything(&settings, options.out.is_some())?,
+    let (files, text, json) = match part {
+        Some(Part::Paper) => {
+            let paper = Paper::measure(&Tables::embedded(), &settings, stage);
+            (paper.files()?, paper.text(), paper.json())
+        }
+        None => everything(&settings)?,
     };
     if let Some(folder) = &options.out {
         files::write(folder, &files)?;
@@ -132,22 +134,11 @@ fn run(Args { part, options }: Args) -> Result<(), Failure> {
     if options.json { print(&format!("{json:#}\n")) } else { print(&text) }
 }
 
-/// What one run is to write and print.
-struct Results {
-    files: Vec<(&'static str, Vec<u8>)>,
-    text: String,
-    json: Value,
-}
-
-/// Figures 4 to 6 of the paper; files only if they are asked for.
-fn only_paper(settings: &Settings, files: bool) -> Result<Results, Failure> {
-    let paper = Paper::measure(&Tables::embedded(), settings, stage);
-    let files = if files { paper.files()? } else { Vec::new() };
-    Ok(Results { files, text: paper.text(), json: paper.json() })
-}
+/// What one run is to write, by name, and to print.
+type Results = (Vec<(&'static str, Vec<u8>)>, String, Value);
 
 /// All rivals, the sweep, and the paper.
-fn everything(settings: &Settings, files: bool) -> Result<Results, Failure> {
+fn everything(settings: &Settings) -> Result<Results, Failure> {
     let slices = Slices::bake();
     stage("rivals: times and errors");
     let rows = rows::rows(&slices, settings);
@@ -157,17 +148,22 @@ fn everything(settings: &Settings, files: bool) -> Result<Results, Failure> {
     let paper = Paper::measure(slices.whole(), settings, stage);
     let mut figures = figures::figures(&rows, &paper.approximation, &slices, settings);
     figures.extend(cliffs::figures(slices.whole(), &sweep, settings));
-    let json = files::document(settings, &rows, &sweep, &figures, &paper);
+    let json = json!({
+        "sigma": SIGMA, "gamma": GAMMA,
+        "inputs": "views evenly over the hemisphere, random numbers uniform in [0, 1)",
+        "calls": settings.calls, "rounds": settings.rounds, "seed": settings.seed,
+        "rows": rows, "sweep": sweep, "figures": figures, "paper": paper.json(),
+    });
+    let mut files = paper.files()?;
+    files.extend([
+        ("bench.csv", files::csv(&[], &rows)?),
+        ("bench.json", format!("{json:#}\n").into_bytes()),
+        ("bench.svg", plot::svg(&rows).into_bytes()),
+        ("sweep.csv", files::csv(&sweep::Cell::COLUMNS, &cells)?),
+    ]);
     let text =
         [terminal::table(&rows), terminal::sweep(&sweep), terminal::block(&figures), paper.text()];
-    let files = if files {
-        let mut all = files::files(&json, &rows, &cells)?;
-        all.extend(paper.files()?);
-        all
-    } else {
-        Vec::new()
-    };
-    Ok(Results { files, text: text.join("\n"), json })
+    Ok((files, text.join("\n"), json))
 }
 
 /// Says on a terminal what is measured now: a bar would need a thread beside the one that is timed.

@@ -22,7 +22,7 @@ pub(crate) fn svg(rows: &[Row]) -> String {
 /// Where a row is drawn: time and error. `None` for a sampler that draws anything but all visible
 /// normals.
 fn place(row: &Row) -> Option<(f64, f64)> {
-    let error = row.error.map_or(EXACT, |error| error.max.max(EXACT));
+    let error = row.error_max.map_or(EXACT, |error| error.max(EXACT));
     row.complete.then_some((row.ns.max(0.1), error))
 }
 
@@ -57,7 +57,7 @@ fn panel(title: &str, y_label: &str, rows: &[&Row]) -> Panel {
 
 fn mark(row: &Row, at: (f64, f64)) -> Mark {
     let ours = row.name.starts_with("table");
-    let exact = if row.error.is_some() { "" } else { " (exact)" };
+    let exact = if row.error_max.is_some() { "" } else { " (exact)" };
     Mark {
         key: Key::Method(if ours { Method::Table } else { Method::Other }),
         name: format!("{}{exact}", row.name),

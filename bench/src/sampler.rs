@@ -7,19 +7,17 @@ use glam::{DVec3, Vec3};
 use microfacet_model as model;
 use microfacet_model::MicrofacetDistribution as _;
 use microfacet_sampler::lobe::Bounded;
-use microfacet_sampler::{Ggx, MicrofacetDistribution as _, StudentT, Tables};
-use microfacet_tables::Table;
+use microfacet_sampler::{Ggx, MicrofacetDistribution as _};
 
 use crate::inputs::Stream;
+use crate::rival::{Draw, Rival, each, in_a_loop, lobe};
+use crate::rivals::beckmann;
 use crate::rivals::bilinear::Bilinear;
+use crate::rivals::ggx::{double, single};
 use crate::rivals::lobe::Lobe;
 use crate::rivals::stream::Drawer;
-use crate::rivals::{beckmann, ggx};
 use crate::settings::{GAMMA, SIGMA};
-use crate::tables::Slices;
-
-/// Normals for views and random numbers, as many as there are views.
-pub(crate) type Draw<'a> = Box<dyn Fn(&[Vec3], &[[f32; 2]], &mut [Vec3]) + 'a>;
+use crate::tables::{HIGH, Slices};
 
 /// The normal of a view at two random numbers, in double precision.
 pub(crate) type Exactly = fn(f64, DVec3, [f64; 2]) -> DVec3;
@@ -48,62 +46,37 @@ pub(crate) enum Density {
     Bounded(Box<Bounded>),
 }
 
-/// A sampler.
+/// How a sampler draws, and what it is judged by.
 pub(crate) struct Sampler<'a> {
-    /// Its name.
-    pub(crate) name: String,
-    /// The shape it draws from; roughness is [`SIGMA`].
-    pub(crate) gamma: f64,
-    /// Bytes of table that lookups touch.
-    pub(crate) bytes: usize,
-    /// Bytes of those tables as stored in a file.
-    pub(crate) stored: usize,
-    /// Draws.
     pub(crate) draw: Draw<'a>,
     pub(crate) check: Check,
     pub(crate) density: Density,
 }
 
-impl<'a> Sampler<'a> {
-    fn new(name: &str, gamma: f64, check: Check, draw: Draw<'a>) -> Self {
-        Self {
-            name: name.into(),
-            gamma,
-            bytes: 0,
-            stored: 0,
-            draw,
-            check,
-            density: Density::Visible,
-        }
-    }
-
+impl Sampler<'_> {
     pub(crate) fn draws_visible_normals(&self) -> bool {
         matches!(self.density, Density::Visible)
     }
-
-    fn tables(self, bytes: usize, stored: usize) -> Self {
-        Self { bytes, stored, ..self }
-    }
 }
 
-/// One call after the other. Each result is used by itself, so that the compiler neither drops a
-/// call nor vectorises the loop: the calls of a path tracer lie apart.
-pub(crate) fn each<'a>(one: impl Fn(Vec3, [f32; 2]) -> Vec3 + 'a) -> Draw<'a> {
-    Box::new(move |v, u, m| {
-        for ((v, u), m) in v.iter().zip(u).zip(m) {
-            *m = black_box(one(*v, *u));
-        }
-    })
+/// A sampler of visible normals.
+fn visible<'a>(name: &'static str, gamma: f64, check: Check, draw: Draw<'a>) -> Rival<Sampler<'a>> {
+    Rival::form(name, gamma, Sampler { draw, check, density: Density::Visible })
 }
 
-/// The same as a loop over arrays, which the compiler may turn into vectors. It does that with
-/// closed forms that have no branches, and not with lookups.
-pub(crate) fn in_a_loop<'a>(one: impl Fn(Vec3, [f32; 2]) -> Vec3 + 'a) -> Draw<'a> {
-    Box::new(move |v, u, m| {
-        for ((v, u), m) in v.iter().zip(u).zip(m) {
-            *m = one(*v, *u);
-        }
-    })
+/// The same sampler, of another density.
+fn with_density<'a>(rival: Rival<Sampler<'a>>, density: Density) -> Rival<Sampler<'a>> {
+    Rival { run: Sampler { density, ..rival.run }, ..rival }
+}
+
+/// The same as a function for one view.
+fn one<'a>(
+    name: &'static str,
+    gamma: f64,
+    check: Check,
+    one: impl Fn(Vec3, [f32; 2]) -> Vec3 + 'a,
+) -> Rival<Sampler<'a>> {
+    visible(name, gamma, check, each(one))
 }
 
 fn streamed<'a>(seed: u64, one: impl Fn(Vec3, &mut Stream) -> Vec3 + 'a) -> Draw<'a> {
@@ -123,125 +96,64 @@ pub(crate) const INVERSION: &str = "inversion of the CDF, any gamma";
 pub(crate) const INVERSION_SUM: &str = "inversion of the CDF, integer gamma";
 
 /// All samplers, over the given tables.
-pub(crate) fn samplers<'a>(slices: &'a Slices, seed: u64) -> Vec<Sampler<'a>> {
+pub(crate) fn samplers(slices: &Slices, seed: u64) -> Vec<Rival<Sampler<'static>>> {
     let sigma = SIGMA as f32;
-    let truth = model::StudentT::new(SIGMA, GAMMA).expect("constants");
-    let drawer = || Drawer::new(SIGMA);
+    let [of_caps, of_list, of_heitz, of_closed] = [
+        double::caps as Exactly,
+        double::listed,
+        double::heitz,
+        // The closed form takes the listing's numbers in the other order: height first.
+        |sigma, v, [height, azimuth]| double::caps(sigma, v, [azimuth, height]),
+    ]
+    .map(Check::Formula);
+    let listed = in_a_loop(move |v, u| single::listed(sigma, v, u));
+    let closed = Ggx::new(SIGMA).expect("a constant");
+    let closed = move |v, u| closed.sample_visible_normal(v, u);
     let (any, four) = (Lobe::any(SIGMA, GAMMA), Lobe::four(SIGMA));
-    let (exact, mixture, ndf) = (drawer(), drawer(), drawer());
+    let truth = model::StudentT::new(SIGMA, GAMMA).expect("constants");
     let doubles = move |v: Vec3, u: [f32; 2]| {
         truth.sample_visible_normal(v.as_dvec3(), u.map(f64::from)).as_vec3()
     };
-    let closed = Ggx::new(SIGMA).expect("a constant");
-    let (caps, listed): (Exactly, Exactly) = (ggx::double::caps, ggx::double::listed);
+    let [exact, mixture, ndf] = [(); 3].map(|()| Drawer::new(SIGMA));
+    let exact = streamed(seed, move |v, stream| exact.exact(v, stream));
+    let mixture = streamed(seed, move |v, stream| mixture.mixture(v, stream));
+    let ndf = one("all normals (NDF)", GAMMA, Check::Distribution, move |_, u| ndf.ndf(u));
     let mut all = vec![
-        Sampler::new(
-            CAPS,
-            2.0,
-            Check::Formula(caps),
-            each(move |v, u| ggx::single::caps(sigma, v, u)),
-        ),
-        Sampler::new(
-            "GGX, spherical caps as listed",
-            2.0,
-            Check::Formula(listed),
-            each(move |v, u| ggx::single::listed(sigma, v, u)),
-        ),
-        Sampler::new(
-            "GGX, spherical caps as listed, in a loop",
-            2.0,
-            Check::Formula(listed),
-            in_a_loop(move |v, u| ggx::single::listed(sigma, v, u)),
-        ),
-        Sampler::new(
-            "GGX, Heitz 2018",
-            2.0,
-            Check::Formula(ggx::double::heitz),
-            each(move |v, u| ggx::single::heitz(sigma, v, u)),
-        ),
-        Sampler::new(
-            "GGX, closed form of the sampler crate",
-            2.0,
-            // It takes the listing's numbers in the other order: height first.
-            Check::Formula(|sigma, v, [height, azimuth]| {
-                ggx::double::caps(sigma, v, [azimuth, height])
-            }),
-            each(move |v, u| closed.sample_visible_normal(v, u)),
-        ),
-        Sampler::new(
-            "Beckmann, numerical inversion",
-            f64::INFINITY,
-            Check::Falling,
-            each(move |v, u| beckmann::sample(sigma, v, u)),
-        ),
-        Sampler::new(INVERSION, GAMMA, Check::Cdf, each(move |v, u| any.sample(v, u))),
-        Sampler::new(INVERSION_SUM, GAMMA, Check::Cdf, each(move |v, u| four.sample(v, u))),
-        Sampler::new("inversion of the CDF, to rounding in f64", GAMMA, Check::Cdf, each(doubles)),
-        Sampler::new(
-            "exact by rejection",
-            GAMMA,
-            Check::Distribution,
-            streamed(seed, move |v, stream| exact.exact(v, stream)),
-        ),
-        Sampler::new(
-            "mixture of Beckmanns",
-            GAMMA,
-            Check::Distribution,
-            streamed(seed, move |v, stream| mixture.mixture(v, stream)),
-        ),
-        Sampler {
-            density: Density::Ndf,
-            ..Sampler::new(
-                "all normals (NDF)",
-                GAMMA,
-                Check::Distribution,
-                each(move |_, u| ndf.ndf(u)),
-            )
-        },
+        one(CAPS, 2.0, of_caps, move |v, u| single::caps(sigma, v, u)),
+        one("GGX, spherical caps as listed", 2.0, of_list, move |v, u| single::listed(sigma, v, u)),
+        visible("GGX, spherical caps as listed, in a loop", 2.0, of_list, listed),
+        one("GGX, Heitz 2018", 2.0, of_heitz, move |v, u| single::heitz(sigma, v, u)),
+        one("GGX, closed form of the sampler crate", 2.0, of_closed, closed),
+        one("Beckmann, numerical inversion", f64::INFINITY, Check::Falling, move |v, u| {
+            beckmann::sample(sigma, v, u)
+        }),
+        one(INVERSION, GAMMA, Check::Cdf, move |v, u| any.sample(v, u)),
+        one(INVERSION_SUM, GAMMA, Check::Cdf, move |v, u| four.sample(v, u)),
+        one("inversion of the CDF, to rounding in f64", GAMMA, Check::Cdf, doubles),
+        visible("exact by rejection", GAMMA, Check::Distribution, exact),
+        visible("mixture of Beckmanns", GAMMA, Check::Distribution, mixture),
+        with_density(ndf, Density::Ndf),
     ];
-    all.extend(slices.each().map(|(name, set)| table(name, set)));
-    all.extend(variants(&slices.default));
+    all.extend(slices.each().map(|(name, set)| {
+        let lobe = lobe(set, GAMMA);
+        one(name, GAMMA, Check::Cdf, move |v, u| lobe.sample_visible_normal(v, u)).of(set)
+    }));
+    let default = slices.default();
+    let lobe = lobe(default, GAMMA);
+    let bounded = lobe.clone().bounded();
+    let density = Density::Bounded(bounded.clone().into());
+    let batch: Draw = Box::new(move |v, u, m| lobe.sample_batch(v, u, m).expect("of one length"));
+    all.push(visible(BATCH, GAMMA, Check::Cdf, batch).of(default));
+    let name = "table, default, bounded to reflections";
+    let bounded = one(name, GAMMA, Check::Distribution, move |v, u| bounded.at(v).sample(u));
+    all.push(with_density(bounded, density).of(default));
     for (name, set) in
-        [("bilinear, default nodes", &slices.default), ("bilinear, high nodes", &slices.high)]
+        [("bilinear, default nodes", default), ("bilinear, high nodes", slices.get(HIGH))]
     {
         let plain = Bilinear::new(SIGMA, GAMMA, set);
         let bytes = plain.bytes();
-        all.push(
-            Sampler::new(name, GAMMA, Check::Cdf, each(move |v, u| plain.sample(v, u)))
-                .tables(bytes, bytes),
-        );
+        let plain = one(name, GAMMA, Check::Cdf, move |v, u| plain.sample(v, u));
+        all.push(Rival { bytes, stored: bytes, ..plain });
     }
     all
-}
-
-/// The batch over slices, and the sampler bounded to reflections.
-fn variants<'a>(set: &Tables) -> [Sampler<'a>; 2] {
-    let (batch, bounded) = (lobe(set, GAMMA), lobe(set, GAMMA));
-    let (bytes, stored) = (batch.bytes(), stored(set));
-    let draw: Draw = Box::new(move |v, u, m| batch.sample_batch(v, u, m).expect("of one length"));
-    let bounded = bounded.bounded();
-    let density = Density::Bounded(bounded.clone().into());
-    let one = each(move |v, u| bounded.at(v).sample(u));
-    let bounded =
-        Sampler::new("table, default, bounded to reflections", GAMMA, Check::Distribution, one);
-    [Sampler::new(BATCH, GAMMA, Check::Cdf, draw), Sampler { density, ..bounded }]
-        .map(|sampler| sampler.tables(bytes, stored))
-}
-
-fn table<'a>(name: &str, set: &Tables) -> Sampler<'a> {
-    let lobe = lobe(set, GAMMA);
-    let (bytes, stored) = (lobe.bytes(), stored(set));
-    Sampler::new(name, GAMMA, Check::Cdf, each(move |v, u| lobe.sample_visible_normal(v, u)))
-        .tables(bytes, stored)
-}
-
-/// The lobe of γ from a set that covers it.
-pub(crate) fn lobe(set: &Tables, gamma: f64) -> StudentT {
-    set.student_t(SIGMA, gamma).expect("the sets were made for this shape")
-}
-
-/// Bytes that the tables for G1 and normals take in a file.
-pub(crate) fn stored(set: &Tables) -> usize {
-    let lookups = set.tables().iter().filter(|table| !table.kind.is_albedo());
-    lookups.map(Table::stored_bytes).sum()
 }

@@ -9,65 +9,53 @@ use microfacet_tables::Precision;
 
 use crate::settings::{GAMMA, SIGMA};
 
-/// Slices at [`GAMMA`], and the compiled-in set for all shapes.
-pub(crate) struct Slices {
-    pub(crate) draft: Tables,
-    pub(crate) default: Tables,
-    pub(crate) high: Tables,
-    pub(crate) f16: Tables,
-    pub(crate) u16: Tables,
-    pub(crate) whole: Tables,
-}
+/// Sets by name: slices at [`GAMMA`], and the compiled-in set for all shapes.
+pub(crate) struct Slices(Vec<(&'static str, Tables)>);
+
+/// Names that figures refer to.
+pub(crate) const TABLE: &str = "table, default";
+pub(crate) const HIGH: &str = "table, high";
+const WHOLE: &str = "table, default, of all gamma";
 
 impl Slices {
     /// Bakes them; a fraction of a second.
     pub(crate) fn bake() -> Self {
-        let f32 = Precision::F32;
-        Self {
-            draft: slice(Quality::Draft, f32, GAMMA),
-            default: slice(Quality::Default, f32, GAMMA),
-            high: slice(Quality::High, f32, GAMMA),
-            f16: slice(Quality::Default, Precision::F16, GAMMA),
-            u16: slice(Quality::Default, Precision::U16, GAMMA),
-            whole: Tables::embedded(),
-        }
+        let slice = |name, quality, precision| (name, slice(quality, precision));
+        Self(vec![
+            slice("table, draft", Quality::Draft, Precision::F32),
+            slice(TABLE, Quality::Default, Precision::F32),
+            slice(HIGH, Quality::High, Precision::F32),
+            slice("table, default, f16", Quality::Default, Precision::F16),
+            slice("table, default, u16", Quality::Default, Precision::U16),
+            (WHOLE, Tables::embedded()),
+        ])
+    }
+
+    /// One of the sets.
+    pub(crate) fn get(&self, name: &str) -> &Tables {
+        &self.0.iter().find(|(of, _)| *of == name).expect("a name of the list").1
+    }
+
+    /// The slice of default quality.
+    pub(crate) fn default(&self) -> &Tables {
+        self.get(TABLE)
     }
 
     /// The compiled-in set.
     pub(crate) fn whole(&self) -> &Tables {
-        &self.whole
+        self.get(WHOLE)
     }
 
     /// Each with its name.
-    pub(crate) fn each(&self) -> impl Iterator<Item = (&'static str, &Tables)> {
-        [
-            (name(Quality::Draft), &self.draft),
-            (name(Quality::Default), &self.default),
-            (name(Quality::High), &self.high),
-            ("table, default, f16", &self.f16),
-            ("table, default, u16", &self.u16),
-            ("table, default, of all gamma", &self.whole),
-        ]
-        .into_iter()
+    pub(crate) fn each(&self) -> impl Iterator<Item = &(&'static str, Tables)> {
+        self.0.iter()
     }
 }
 
 /// The set of one material, as any scene with that material gets it.
-fn slice(quality: Quality, precision: Precision, gamma: f64) -> Tables {
-    let recipe = format!("[[material]]\nname = \"it\"\nsigma = {SIGMA}\ngamma = {gamma}\n");
+fn slice(quality: Quality, precision: Precision) -> Tables {
+    let recipe = format!("[[material]]\nname = \"it\"\nsigma = {SIGMA}\ngamma = {GAMMA}\n");
     let scene = Scene::from_recipe_str(&recipe).expect("a sound recipe");
     let plan = Plan::new(&scene, Options::default()).expect("gamma is covered");
     bake(&plan, Target::Quality(quality, precision)).expect("a quality is always met").set
-}
-
-/// The name of the row that the figures use.
-pub(crate) const TABLE: &str = "table, default";
-
-/// Names of the qualities.
-fn name(quality: Quality) -> &'static str {
-    match quality {
-        Quality::Draft => "table, draft",
-        Quality::Default => TABLE,
-        Quality::High => "table, high",
-    }
 }

@@ -22,17 +22,11 @@ pub(crate) fn table(rows: &[Row]) -> String {
         text += if quantity == Quantity::Normal { "  variance  var x ns\n" } else { "\n" };
         for row in rows.iter().filter(|row| row.quantity == quantity) {
             let error = |x: Option<f64>| x.map_or("-".into(), |x| format!("{x:.1e}"));
-            text += &format!(
-                "{:42} {:>5} {:>9.2} {:>8} {:>8} {:>9} {:>9}",
-                row.name,
-                row.gamma,
-                row.ns,
-                row.bytes,
-                row.stored,
-                error(row.error.map(|error| error.max)),
-                error(row.error.map(|error| error.rms)),
-            );
-            if let (Some(variance), Some(cost)) = (row.variance, row.cost()) {
+            let (max, rms) = (error(row.error_max), error(row.error_rms));
+            let Row { name, gamma, ns, bytes, stored_bytes: stored, .. } = row;
+            text +=
+                &format!("{name:42} {gamma:>5} {ns:>9.2} {bytes:>8} {stored:>8} {max:>9} {rms:>9}");
+            if let (Some(variance), Some(cost)) = (row.furnace_variance, row.variance_ns) {
                 text += &format!(" {variance:>9.5} {cost:>9.3}");
             }
             text.push('\n');
@@ -47,7 +41,9 @@ pub(crate) fn sweep(summaries: &[Summary]) -> String {
         "{:33} {:>8} {:>8} {:>8} {:>8}  worst at gamma, sigma (turns), views, numbers\n",
         "sweep, ns a call", "common", "median", "99 %", "worst"
     );
-    for Summary { common, median, most, worst, .. } in summaries {
+    for summary in summaries {
+        let Summary { common_ns: common, median_ns: median, worst, .. } = summary;
+        let most = summary.percentile_99_ns;
         let [x, y] = worst.sigma;
         let sigma = if x == y { x.to_string() } else { format!("{x}:{y}") };
         let [a, b, c] = worst.turns;

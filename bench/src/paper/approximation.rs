@@ -6,14 +6,17 @@ use microfacet_model::{StudentT, printed};
 use microfacet_sampler::MicrofacetDistribution as _;
 use microfacet_sampler::Tables;
 
+use serde::Serialize;
+
 use crate::settings::SIGMA;
 
-/// The errors for one view.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The errors for one view: a line of `figure-5.csv`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Approximation {
     /// The shape.
     pub(crate) gamma: f64,
     /// Polar angle of the view, degrees.
+    #[serde(rename = "theta_degrees")]
     pub(crate) degrees: f64,
     /// The exact G1.
     pub(crate) g1: f64,

@@ -179,19 +179,19 @@ fn alternate(i: usize) -> Dash {
 /// The curves of one coordinate. What has one shape is the same for all.
 fn time_curves(of: &[&Timing], by_gamma: bool, scale: f64) -> Vec<Curve> {
     let mut of: Vec<&Timing> =
-        of.iter().copied().filter(|time| time.at.by_gamma == by_gamma).collect();
-    of.sort_by_key(|time| time.at.method);
+        of.iter().copied().filter(|time| time.by_gamma == by_gamma).collect();
+    of.sort_by_key(|time| time.method);
     let curve = |times: &[&Timing]| {
-        let method = times[0].at.method;
+        let method = times[0].method;
         let y = |time: &Timing| scale * time.ns.max(0.1);
-        let points = times.iter().filter(|time| time.at.gamma.is_finite() || !by_gamma);
+        let points = times.iter().filter(|time| time.gamma.is_finite() || !by_gamma);
         let points = match method.is_reference() && by_gamma {
             true => SHAPES.map(|gamma| (gamma, y(times[0]))).into(),
-            false if by_gamma => points.map(|time| (time.at.gamma, y(time))).collect(),
-            false => points.map(|time| (time.at.sigma, y(time))).collect(),
+            false if by_gamma => points.map(|time| (time.gamma, y(time))).collect(),
+            false => points.map(|time| (time.sigma, y(time))).collect(),
         };
         let dash = if method.is_reference() { Dash::Dashed } else { Dash::Solid };
         Curve { key: method.key(), name: method.name().into(), dash, points }
     };
-    of.chunk_by(|a, b| a.at.method == b.at.method).map(curve).collect()
+    of.chunk_by(|a, b| a.method == b.method).map(curve).collect()
 }

@@ -12,7 +12,7 @@ use microfacet_study::spheres::sky::Sky;
 
 use super::method::Method;
 use super::studio::Metal;
-use crate::masking::{self, Evaluate};
+use crate::rival::{Evaluate, each_value};
 use crate::rivals::lobe::Lobe;
 use crate::rivals::rational::{LARGEST, Rational};
 use crate::rivals::{beckmann, ggx};
@@ -50,7 +50,7 @@ impl Stage {
                 black_box(pixel);
             });
         };
-        Form { method, g1: masking::each(g1), line: Box::new(line) }
+        Form { method, g1: each_value(g1), line: Box::new(line) }
     }
 
     /// All forms that are defined for a Student-t. Those of the paper are as printed, in double

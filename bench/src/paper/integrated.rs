@@ -4,6 +4,7 @@
 
 use microfacet_core::gauss_legendre;
 use microfacet_model::{Shape, printed};
+use serde::Serialize;
 
 use super::times::{GAMMAS, SIGMAS};
 
@@ -11,9 +12,10 @@ use super::times::{GAMMAS, SIGMAS};
 pub(crate) const CLAIM: f64 = 0.007;
 
 /// A measure of ΔG1 = approximation − exact; dω is the solid angle of the view.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Measure {
     /// The name of its column.
+    #[serde(rename = "measure")]
     pub(crate) column: &'static str,
     pub(crate) formula: &'static str,
 }
@@ -38,8 +40,8 @@ pub(crate) const MEASURES: [Measure; 9] = [
 /// The plainest of them: ∫|ΔG1| dω / ∫G1 dω.
 pub(crate) const RELATIVE: usize = 1;
 
-/// The measures for one material.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The measures for one material: a line of `figure-5-integrated.csv`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Integrated {
     /// The shape.
     pub(crate) gamma: f64,
@@ -134,23 +136,25 @@ fn measures(
 }
 
 /// A measure over all materials: how large it gets, and where it keeps below [`CLAIM`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Verdict {
-    /// Its place in [`MEASURES`].
-    pub(crate) measure: usize,
+    #[serde(flatten)]
+    pub(crate) measure: Measure,
     /// The largest value.
+    #[serde(rename = "largest")]
     pub(crate) worst: f64,
     /// The γ where that is.
     pub(crate) gamma: f64,
     /// The σ where that is; `None` if it is as large at every σ.
     pub(crate) sigma: Option<f64>,
     /// The shapes for which it is below the claim at every σ, as ranges of the shapes looked at.
+    #[serde(rename = "gammas_below_claim")]
     pub(crate) below: Vec<[f64; 2]>,
 }
 
 /// Every measure, judged.
 pub(crate) fn verdicts(all: &[Integrated]) -> Vec<Verdict> {
-    let verdict = |measure: usize| {
+    let verdict = |(measure, &of): (usize, &Measure)| {
         let error = |at: &Integrated| at.errors[measure];
         let worst = all.iter().max_by(|a, b| error(a).total_cmp(&error(b))).expect("not empty");
         let mut below: Vec<[f64; 2]> = Vec::new();
@@ -169,9 +173,9 @@ pub(crate) fn verdicts(all: &[Integrated]) -> Vec<Verdict> {
         // What depends on cot θ/σ alone.
         let mut of_shape = all.iter().filter(|at| at.gamma == gamma);
         let is_any = of_shape.all(|at| (error(at) / worst - 1.0).abs() < 1e-6);
-        Verdict { measure, worst, gamma, sigma: (!is_any).then_some(sigma), below }
+        Verdict { measure: of, worst, gamma, sigma: (!is_any).then_some(sigma), below }
     };
-    (0..MEASURES.len()).map(verdict).collect()
+    MEASURES.iter().enumerate().map(verdict).collect()
 }
 
 #[cfg(test)]
@@ -246,12 +250,14 @@ mod tests {
             [at(5.0, 0.1, low), at(5.0, 0.2, CLAIM)],
             [at(6.0, 0.1, low), at(6.0, 0.2, low)],
         ];
-        for (measure, verdict) in verdicts(all.as_flattened()).into_iter().enumerate() {
-            let below = vec![[2.0, 3.0], [6.0, 6.0]];
-            assert_eq!(
-                verdict,
-                Verdict { measure, worst: high, gamma: 4.0, sigma: Some(0.2), below }
-            );
-        }
+        let below = vec![[2.0, 3.0], [6.0, 6.0]];
+        let of = |measure| Verdict {
+            measure,
+            worst: high,
+            gamma: 4.0,
+            sigma: Some(0.2),
+            below: below.clone(),
+        };
+        assert_eq!(verdicts(all.as_flattened()), MEASURES.map(of));
     }
 }

@@ -2,9 +2,11 @@
 
 use microfacet_report::plot;
 use microfacet_report::plot::Key;
+use serde::Serialize;
 
 /// A way to compute G1, or to draw visible normals, in the order of tables and legends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(into = "&'static str")]
 pub(super) enum Method {
     /// Eq. 13–15.
     Hypergeometric,
@@ -29,38 +31,38 @@ pub(super) enum Method {
 }
 
 impl Method {
-    pub(super) const fn name(self) -> &'static str {
+    const fn parts(self) -> (&'static str, plot::Method) {
+        use plot::Method as Plotted;
         match self {
-            Self::Hypergeometric => "eq. 13-15, hypergeometric",
-            Self::Integer => "eq. 21, integer",
-            Self::HalfInteger => "eq. 21, half-integer",
-            Self::Rational => "eq. 22-23, rational",
-            Self::Beta => "beta function, prepared",
-            Self::Table => "table",
-            Self::Ggx => "GGX, closed form",
-            Self::Beckmann => "Beckmann, closed form",
-            Self::Inversion => "inversion of the CDF, f64",
-            Self::Rejection => "exact by rejection, f64",
+            Self::Hypergeometric => ("eq. 13-15, hypergeometric", Plotted::Hypergeometric),
+            Self::Integer => ("eq. 21, integer", Plotted::Integer),
+            Self::HalfInteger => ("eq. 21, half-integer", Plotted::HalfInteger),
+            Self::Rational => ("eq. 22-23, rational", Plotted::Rational),
+            Self::Beta => ("beta function, prepared", Plotted::Other),
+            Self::Table => ("table", Plotted::Table),
+            Self::Ggx => ("GGX, closed form", Plotted::Ggx),
+            Self::Beckmann => ("Beckmann, closed form", Plotted::Beckmann),
+            Self::Inversion => ("inversion of the CDF, f64", Plotted::Inversion),
+            Self::Rejection => ("exact by rejection, f64", Plotted::Rejection),
         }
+    }
+
+    pub(super) const fn name(self) -> &'static str {
+        self.parts().0
+    }
+
+    pub(super) fn key(self) -> Key {
+        Key::Method(self.parts().1)
     }
 
     /// Whether it has one shape, which stands for all in a comparison.
     pub(super) const fn is_reference(self) -> bool {
         matches!(self, Self::Ggx | Self::Beckmann)
     }
+}
 
-    pub(super) fn key(self) -> Key {
-        Key::Method(match self {
-            Self::Hypergeometric => plot::Method::Hypergeometric,
-            Self::Integer => plot::Method::Integer,
-            Self::HalfInteger => plot::Method::HalfInteger,
-            Self::Rational => plot::Method::Rational,
-            Self::Beta => plot::Method::Other,
-            Self::Table => plot::Method::Table,
-            Self::Inversion => plot::Method::Inversion,
-            Self::Rejection => plot::Method::Rejection,
-            Self::Ggx => plot::Method::Ggx,
-            Self::Beckmann => plot::Method::Beckmann,
-        })
+impl From<Method> for &str {
+    fn from(method: Method) -> Self {
+        method.name()
     }
 }

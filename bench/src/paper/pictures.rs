@@ -8,6 +8,7 @@ use microfacet_sampler::MicrofacetDistribution as _;
 use microfacet_sampler::{self as sampler, StudentT, Tables};
 use microfacet_study::spheres::sky::Sky;
 use rayon::prelude::*;
+use serde::Serialize;
 
 use super::studio::Metal;
 use crate::rivals::rational::Rational;
@@ -28,20 +29,26 @@ pub(crate) struct Picture {
     pub(crate) pixels: Vec<DVec3>,
 }
 
-/// How far a picture is from the exact one, over the pixels that show the sphere.
-#[derive(Clone, Debug, PartialEq)]
+/// How far a picture is from the exact one, over the pixels that show the sphere: a line of
+/// `figure-6.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Difference {
+    pub(crate) gamma: f64,
     /// Of [`FORMS`].
     pub(crate) form: &'static str,
     /// Root mean square over pixels and channels, of radiance.
     pub(crate) rmse: f64,
     /// The same over the mean radiance of the exact picture.
+    #[serde(rename = "relative_rmse")]
     pub(crate) relative: f64,
     /// The same of what is shown, encoded as sRGB, in steps of 1/255.
+    #[serde(rename = "rmse_steps")]
     pub(crate) steps: f64,
     /// The largest of a pixel and channel, in such steps.
+    #[serde(rename = "max_steps")]
     pub(crate) most_steps: f64,
     /// The largest of the channels for each pixel, of radiance.
+    #[serde(skip)]
     pub(crate) pixels: Vec<f64>,
 }
 
@@ -71,8 +78,10 @@ impl Compared {
             picture(&lobe, |w| rational.g1(w).min(1.0), film, seed),
             picture(&lobe, |w| lobe.g1(w), film, seed),
         ];
-        let differences =
-            FORMS.into_iter().zip(&others).map(|(form, other)| exact.difference(form, other));
+        let differences = FORMS
+            .into_iter()
+            .zip(&others)
+            .map(|(form, other)| exact.difference(gamma, form, other));
         Self { gamma, mean: exact.mean(), differences: differences.collect(), exact }
     }
 }
@@ -97,7 +106,7 @@ impl Picture {
         sum / (3 * self.covered().count()) as f64
     }
 
-    fn difference(&self, form: &'static str, other: &Self) -> Difference {
+    fn difference(&self, gamma: f64, form: &'static str, other: &Self) -> Difference {
         let [mut squares, mut shown, mut most, mut count] = [0.0_f64; 4];
         for i in self.covered() {
             let (a, b) = (self.pixels[i], other.pixels[i]);
@@ -110,6 +119,7 @@ impl Picture {
         let rmse = (squares / count).sqrt();
         let pixels = self.pixels.iter().zip(&other.pixels);
         Difference {
+            gamma,
             form,
             rmse,
             relative: rmse / self.mean(),
@@ -140,10 +150,10 @@ mod tests {
         let lobe = Tables::embedded().student_t(SIGMA, 3.0).unwrap();
         let truth = model::StudentT::new(SIGMA, 3.0).unwrap();
         let exact = |seed| picture(&lobe, |w| truth.g1(w.as_dvec3()) as f32, FILM, seed);
-        let none = exact(1).difference("itself", &exact(1));
+        let none = exact(1).difference(3.0, "itself", &exact(1));
         assert_eq!([none.rmse, none.relative, none.steps, none.most_steps], [0.0; 4]);
         assert!(none.pixels.iter().all(|&x| x == 0.0));
-        assert!(exact(1).difference("another seed", &exact(2)).rmse > 0.01);
+        assert!(exact(1).difference(3.0, "another seed", &exact(2)).rmse > 0.01);
     }
 
     /// A factor of 1 + a on G1 is one of (1 + a)² on radiance.
@@ -154,7 +164,7 @@ mod tests {
         let other = picture(&lobe, |w| 1.05 * lobe.g1(w), FILM, 1);
         let squares: f64 = exact.covered().map(|i| exact.pixels[i].length_squared()).sum();
         let want = (1.05 * 1.05 - 1.0) * (squares / (3 * exact.covered().count()) as f64).sqrt();
-        let got = exact.difference("", &other);
+        let got = exact.difference(3.0, "", &other);
         assert!((got.rmse / want - 1.0).abs() < 1e-4, "{} for {want}", got.rmse);
         assert!(got.relative > 0.1 && got.most_steps >= got.steps && got.steps > 1.0, "{got:?}");
     }

@@ -16,7 +16,7 @@ impl Paper {
     /// Methods over γ: nanoseconds of one G1, and pictures relative to others.
     fn times_text(&self) -> String {
         let alone = |at: &Timing| Some(at.ns);
-        let over_table = |at: &Timing| Some(at.ns / self.picture(Method::Table, at.at.gamma)?);
+        let over_table = |at: &Timing| Some(at.ns / self.picture(Method::Table, at.gamma)?);
         let closed = self.picture(Method::Ggx, 2.0);
         let over_closed = |at: &Timing| Some(at.ns / closed?);
         let ggx = closed.map_or(String::new(), |ns| format!(", which takes {:.2} ms", 1e-6 * ns));
@@ -40,9 +40,9 @@ impl Paper {
     /// Nanoseconds of a picture. A closed form has one shape, which serves for all.
     fn picture(&self, method: Method, gamma: f64) -> Option<f64> {
         let of = self.times.iter().filter(|time| {
-            time.quantity == Quantity::Picture && time.at.by_gamma && time.at.method == method
+            time.quantity == Quantity::Picture && time.by_gamma && time.method == method
         });
-        of.clone().find(|time| time.at.gamma == gamma).map(|time| time.ns)
+        of.clone().find(|time| time.gamma == gamma).map(|time| time.ns)
     }
 
     /// A table of methods over γ; what is measured at one shape alone stands in its column, and
@@ -54,13 +54,13 @@ impl Paper {
         value: &dyn Fn(&Timing) -> Option<f64>,
     ) -> String {
         let of: Vec<&Timing> =
-            self.times.iter().filter(|at| at.quantity == quantity && at.at.by_gamma).collect();
-        let mut methods: Vec<Method> = of.iter().map(|at| at.at.method).collect();
+            self.times.iter().filter(|at| at.quantity == quantity && at.by_gamma).collect();
+        let mut methods: Vec<Method> = of.iter().map(|at| at.method).collect();
         methods.sort();
         methods.dedup();
         let shapes: Vec<f64> = GAMMAS.into_iter().chain([f64::INFINITY]).collect();
         let cell = |method: Method, gamma: f64| {
-            let at = of.iter().find(|at| at.at.method == method && at.at.gamma == gamma);
+            let at = of.iter().find(|at| at.method == method && at.gamma == gamma);
             at.and_then(|at| value(at)).map_or(String::new(), significant)
         };
         let rows = methods.into_iter().map(|method| (method.name().into(), method));
@@ -88,7 +88,7 @@ impl Paper {
             };
             text += &format!(
                 "{:32} {:>7.3} % {:>9} {sigma:>6}  {below}\n",
-                MEASURES[verdict.measure].formula,
+                verdict.measure.formula,
                 1e2 * verdict.worst,
                 significant(verdict.gamma),
             );

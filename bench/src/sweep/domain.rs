@@ -5,7 +5,7 @@ use std::f32::consts::FRAC_PI_2;
 use glam::Vec3;
 use microfacet_sampler::Skew;
 use rand::rngs::StdRng;
-use rand::{Rng, RngExt, SeedableRng};
+use rand::{RngExt, SeedableRng};
 
 use crate::inputs::direction;
 
@@ -39,80 +39,68 @@ pub(crate) const ELLIPSOIDS: [([f64; 2], [f64; 3]); 5] = [
     ([1.0, 0.2], [0.3, 0.8, -0.4]),
 ];
 
-/// A class of views.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Views {
-    /// Evenly over the hemisphere.
-    Random,
-    /// Cosines from 1e-6 to 0.01, evenly in their logarithm.
-    Grazing,
-    /// All straight down onto the surface, (0, 0, 1).
-    Down,
-    /// On the horizon.
-    Horizon,
-    /// Below the horizon, evenly over that hemisphere.
-    Below,
-    /// Above the surface, but below the horizon of a lobe that leans away.
-    BelowLobe(Skew),
-    /// The same, at depths of 0.8 to 1 unit slopes, where the least is saved: too deep for a table,
-    /// not deep enough for an expansion.
-    BelowLobeNear(Skew),
+/// A class of views: its name, and one try to draw a unit vector from two random numbers.
+pub(crate) struct Views {
+    pub(crate) name: &'static str,
+    one: Box<dyn Fn([f32; 2]) -> Option<Vec3>>,
 }
 
-impl Views {
-    /// The classes that every lobe has.
-    pub(crate) const ALL: [Self; 5] =
-        [Self::Random, Self::Grazing, Self::Down, Self::Horizon, Self::Below];
+/// The class of views that most calls of a renderer have, evenly over the hemisphere.
+pub(crate) const RANDOM: &str = "random";
 
-    /// The classes of views below an ellipsoid's own horizon, as far as there are any.
+impl Views {
+    fn new(name: &'static str, one: impl Fn([f32; 2]) -> Option<Vec3> + 'static) -> Self {
+        Self { name, one: Box::new(one) }
+    }
+
+    /// The classes that every lobe has.
+    pub(crate) fn all() -> [Self; 5] {
+        let even =
+            |name, z: fn(f32) -> f32| Self::new(name, move |[a, b]| Some(direction(z(a), b)));
+        [
+            even(RANDOM, |a| 1.0 - a),
+            // Cosines from 1e-6 to 0.01, evenly in their logarithm.
+            even("grazing", |a| 10_f32.powf(-2.0 - 4.0 * a)),
+            Self::down(),
+            even("horizon", |_| 0.0),
+            even("below", |a| a - 1.0),
+        ]
+    }
+
+    /// All straight down onto the surface, (0, 0, 1).
+    pub(crate) fn down() -> Self {
+        Self::new("straight down", |_| Some(Vec3::Z))
+    }
+
+    /// Views above the surface, but below the horizon of a lobe that leans away, as far as there
+    /// are any: of all depths; and at depths of 0.8 to 1 unit slopes, where the least is saved: too
+    /// deep for a table, not deep enough for an expansion.
     pub(crate) fn below_lobe(skew: Skew) -> impl Iterator<Item = Self> {
-        let classes = [Self::BelowLobe(skew), Self::BelowLobeNear(skew)];
+        let below = move |[a, b]: [f32; 2]| {
+            // The lobe's horizon is at the slope −(x, y)·(cos φ, sin φ).
+            let [x, y] = [skew.x as f32, skew.y as f32];
+            let off = 0.95 * FRAC_PI_2 * (2.0 * b - 1.0);
+            let slope = a * off.cos() * x.hypot(y);
+            let (sin, cos) = ((-y).atan2(-x) + off).sin_cos();
+            (slope > 0.0).then(|| Vec3::new(cos, sin, slope).normalize())
+        };
+        let near = move |u| {
+            let v: Vec3 = below(u)?;
+            let [x, y, z] = skew.direction(v.as_dvec3().to_array());
+            (0.8..1.0).contains(&(-z / x.hypot(y))).then_some(v)
+        };
+        let classes =
+            [Self::new("below the lobe", below), Self::new("below the lobe by 0.8 to 1", near)];
         classes.into_iter().filter(|views| !views.draw(1, 1).is_empty())
     }
 
-    pub(crate) const fn name(self) -> &'static str {
-        match self {
-            Self::Random => "random",
-            Self::Grazing => "grazing",
-            Self::Down => "straight down",
-            Self::Horizon => "horizon",
-            Self::Below => "below",
-            Self::BelowLobe(_) => "below the lobe",
-            Self::BelowLobeNear(_) => "below the lobe by 0.8 to 1",
-        }
-    }
-
     /// Unit vectors of this class; none if it is empty.
-    pub(crate) fn draw(self, seed: u64, count: usize) -> Vec<Vec3> {
+    pub(crate) fn draw(&self, seed: u64, count: usize) -> Vec<Vec3> {
         let mut random = StdRng::seed_from_u64(seed);
         // Few tries are enough for a class that is not empty.
         let tries = 1000 * count;
-        std::iter::repeat_with(|| self.one(&mut random)).take(tries).flatten().take(count).collect()
-    }
-
-    /// One try.
-    fn one(self, random: &mut impl Rng) -> Option<Vec3> {
-        let [a, b]: [f32; 2] = random.random();
-        Some(match self {
-            Self::Random => direction(1.0 - a, b),
-            Self::Grazing => direction(10_f32.powf(-2.0 - 4.0 * a), b),
-            Self::Down => Vec3::Z,
-            Self::Horizon => direction(0.0, b),
-            Self::Below => direction(a - 1.0, b),
-            Self::BelowLobe(Skew { x, y, .. }) => {
-                // The lobe's horizon is at the slope −(x, y)·(cos φ, sin φ).
-                let [x, y] = [x as f32, y as f32];
-                let off = 0.95 * FRAC_PI_2 * (2.0 * b - 1.0);
-                let slope = a * off.cos() * x.hypot(y);
-                let (sin, cos) = ((-y).atan2(-x) + off).sin_cos();
-                return (slope > 0.0).then(|| Vec3::new(cos, sin, slope).normalize());
-            }
-            Self::BelowLobeNear(skew) => {
-                let v = Self::BelowLobe(skew).one(random)?;
-                let [x, y, z] = skew.direction(v.as_dvec3().to_array());
-                return (0.8..1.0).contains(&(-z / x.hypot(y))).then_some(v);
-            }
-        })
+        let one = || (self.one)(random.random());
+        std::iter::repeat_with(one).take(tries).flatten().take(count).collect()
     }
 }
 
@@ -128,28 +116,24 @@ pub(crate) enum Numbers {
 }
 
 impl Numbers {
-    pub(crate) const ALL: [Self; 3] = [Self::Random, Self::SomeAtEnds, Self::AllAtEnds];
-
-    pub(crate) const fn name(self) -> &'static str {
-        match self {
-            Self::Random => "random",
-            Self::SomeAtEnds => "5 % at an end",
-            Self::AllAtEnds => "at the ends",
-        }
-    }
+    pub(crate) const ALL: [(&str, Self); 3] = [
+        (RANDOM, Self::Random),
+        ("5 % at an end", Self::SomeAtEnds),
+        ("at the ends", Self::AllAtEnds),
+    ];
 
     /// Pairs of this class.
     pub(crate) fn draw(self, seed: u64, count: usize) -> Vec<[f32; 2]> {
         let mut random = StdRng::seed_from_u64(!seed);
         let one = |_| {
             let mut u: [f32; 2] = random.random();
-            let (at_end, which, [a, b]): (f32, usize, [bool; 2]) =
+            let (at_end, which, ends): (f32, usize, [bool; 2]) =
                 (random.random(), random.random_range(0..2), random.random());
+            let ends = ends.map(|end| f32::from(u8::from(end)));
             match self {
-                Self::Random => {}
-                Self::SomeAtEnds if at_end < 0.05 => u[which] = f32::from(u8::from(a)),
-                Self::SomeAtEnds => {}
-                Self::AllAtEnds => u = [a, b].map(|end| f32::from(u8::from(end))),
+                Self::SomeAtEnds if at_end < 0.05 => u[which] = ends[0],
+                Self::AllAtEnds => u = ends,
+                Self::Random | Self::SomeAtEnds => {}
             }
             u
         };
@@ -169,7 +153,7 @@ mod tests {
             assert_eq!(classes.is_empty(), turns == [0.0; 3]);
             for (views, range) in classes.iter().zip([0.0..f64::INFINITY, 0.8..1.0]) {
                 let drawn = views.draw(1, 500);
-                assert_eq!(drawn.len(), 500, "{views:?}");
+                assert_eq!(drawn.len(), 500, "{}", views.name);
                 for v in drawn {
                     let [x, y, z] = skew.direction(v.as_dvec3().to_array());
                     let depth = -z / x.hypot(y);
@@ -183,16 +167,13 @@ mod tests {
             Views::below_lobe(Skew::new(sigma, turns).unwrap()).count()
         };
         assert_eq!([classes(2), classes(3)], [2, 1]);
-        let within = |views: Views, low: f32, high: f32| {
+        let heights = [[0.0, 1.0], [0.99e-6, 1.01e-2], [1.0; 2], [0.0; 2], [-1.0, 0.0]];
+        for (views, [low, high]) in Views::all().iter().zip(heights) {
             let drawn = views.draw(1, 500);
             assert_eq!(drawn.len(), 500);
-            assert!(drawn.iter().all(|v| (low..=high).contains(&v.z) && v.is_normalized()));
-        };
-        within(Views::Random, 0.0, 1.0);
-        within(Views::Grazing, 0.99e-6, 1.01e-2);
-        within(Views::Down, 1.0, 1.0);
-        within(Views::Horizon, 0.0, 0.0);
-        within(Views::Below, -1.0, 0.0);
+            let is_sound = |v: &Vec3| (low..=high).contains(&v.z) && v.is_normalized();
+            assert!(drawn.iter().all(is_sound), "{}", views.name);
+        }
     }
 
     #[test]

@@ -21,7 +21,7 @@ pub(super) struct Case {
     l: Vec3,
 }
 
-/// All cases of a cell, and room for results.
+/// All cases of a cell, and room for the results of batches.
 pub(super) struct Cases {
     each: Vec<Case>,
     v: Vec<Vec3>,
@@ -45,22 +45,6 @@ impl Cases {
             values: vec![0.0; v.len()],
         }
     }
-
-    /// Calls a scalar function for each case of a range; each result is used by itself.
-    #[inline(always)]
-    fn values(&mut self, at: Range<usize>, one: impl Fn(&Case) -> f32) {
-        for (case, value) in self.each[at.clone()].iter().zip(&mut self.values[at]) {
-            *value = black_box(one(case));
-        }
-    }
-
-    /// The same for a function that gives a normal.
-    #[inline(always)]
-    fn normals(&mut self, at: Range<usize>, one: impl Fn(&Case) -> Vec3) {
-        for (case, normal) in self.each[at.clone()].iter().zip(&mut self.normals[at]) {
-            *normal = black_box(one(case));
-        }
-    }
 }
 
 /// A public function of a lobe.
@@ -70,73 +54,67 @@ pub(super) struct Function<L> {
     /// Whether its arguments depend on the random numbers, as normals and lights do.
     pub(super) reads_numbers: bool,
     /// Calls it for each case of a range.
-    pub(super) run: fn(&L, &mut Cases, Range<usize>),
+    pub(super) run: Box<dyn Fn(&L, &mut Cases, Range<usize>)>,
 }
 
-impl<L> Function<L> {
-    /// A function of the view alone.
-    fn of_view(name: &'static str, run: fn(&L, &mut Cases, Range<usize>)) -> Self {
-        Self { name, reads_numbers: false, run }
-    }
-
-    /// A function of the random numbers, too, or of the normal or the light that they give.
-    fn of_numbers(name: &'static str, run: fn(&L, &mut Cases, Range<usize>)) -> Self {
-        Self { name, reads_numbers: true, run }
-    }
+/// One call after the other; each result is used by itself.
+fn each<L, R>(
+    name: &'static str,
+    reads_numbers: bool,
+    one: impl Fn(&L, &Case) -> R + 'static,
+) -> Function<L> {
+    let run = move |lobe: &L, cases: &mut Cases, at: Range<usize>| {
+        for case in &cases.each[at] {
+            black_box(one(lobe, case));
+        }
+    };
+    Function { name, reads_numbers, run: Box::new(run) }
 }
 
 /// Those of every lobe.
-pub(super) fn common<L: MicrofacetDistribution>() -> Vec<Function<L>> {
+pub(super) fn common<L: MicrofacetDistribution + 'static>() -> Vec<Function<L>> {
     const G2: Masking = Masking::HeightCorrelated;
     vec![
-        Function::of_numbers("d", |lobe: &L, cases, at| cases.values(at, |case| lobe.d(case.m))),
-        Function::of_view("g1", |lobe: &L, cases, at| cases.values(at, |case| lobe.g1(case.v))),
-        Function::of_view("lambda", |lobe: &L, cases, at| {
-            cases.values(at, |case| lobe.lambda(case.v));
-        }),
-        Function::of_numbers("g2", |lobe: &L, cases, at| {
-            cases.values(at, |case| lobe.g2(case.v, case.l, G2));
-        }),
-        Function::of_numbers("reflection_weight", |lobe: &L, cases, at| {
-            cases.values(at, |case| lobe.reflection_weight(case.v, case.l, G2));
-        }),
-        Function::of_numbers("sample_visible_normal", |lobe: &L, cases, at| {
-            cases.normals(at, |case| lobe.sample_visible_normal(case.v, case.u));
-        }),
-        Function::of_numbers("sample_with_pdf", |lobe: &L, cases, at| {
-            cases.normals(at, |case| {
-                let (m, pdf) = lobe.sample_with_pdf(case.v, case.u);
-                black_box(pdf);
-                m
-            });
-        }),
-        Function::of_numbers("visible_normal_pdf", |lobe: &L, cases, at| {
-            cases.values(at, |case| lobe.visible_normal_pdf(case.v, case.m));
-        }),
-        Function::of_numbers("table_pdf", |lobe: &L, cases, at| {
-            cases.values(at, |case| lobe.table_pdf(case.v, case.m));
-        }),
-        Function::of_numbers("sample_batch", |lobe: &L, cases, at| {
-            let Cases { v, u, normals, .. } = cases;
-            lobe.sample_batch(&v[at.clone()], &u[at.clone()], &mut normals[at])
-                .expect("of one length");
-        }),
-        Function::of_view("g1_batch", |lobe: &L, cases, at| {
-            lobe.g1_batch(&cases.v[at.clone()], &mut cases.values[at]).expect("of one length");
-        }),
+        each("d", true, |lobe: &L, at| lobe.d(at.m)),
+        each("g1", false, |lobe: &L, at| lobe.g1(at.v)),
+        each("lambda", false, |lobe: &L, at| lobe.lambda(at.v)),
+        each("g2", true, |lobe: &L, at| lobe.g2(at.v, at.l, G2)),
+        each("reflection_weight", true, |lobe: &L, at| lobe.reflection_weight(at.v, at.l, G2)),
+        each("sample_visible_normal", true, |lobe: &L, at| lobe.sample_visible_normal(at.v, at.u)),
+        each("sample_with_pdf", true, |lobe: &L, at| lobe.sample_with_pdf(at.v, at.u)),
+        each("visible_normal_pdf", true, |lobe: &L, at| lobe.visible_normal_pdf(at.v, at.m)),
+        each("table_pdf", true, |lobe: &L, at| lobe.table_pdf(at.v, at.m)),
+        Function {
+            name: "sample_batch",
+            reads_numbers: true,
+            run: Box::new(|lobe, Cases { v, u, normals, .. }, at| {
+                lobe.sample_batch(&v[at.clone()], &u[at.clone()], &mut normals[at])
+                    .expect("of one length");
+            }),
+        },
+        Function {
+            name: "g1_batch",
+            reads_numbers: false,
+            run: Box::new(|lobe, Cases { v, values, .. }, at| {
+                lobe.g1_batch(&v[at.clone()], &mut values[at]).expect("of one length");
+            }),
+        },
     ]
 }
 
 /// Those of a Student-t bounded to reflections.
 pub(super) fn of_bounded() -> Vec<Function<Bounded>> {
     vec![
-        Function::of_numbers("at, drawn once", |bounded: &Bounded, cases, at| {
-            cases.normals(at, |case| bounded.at(case.v).sample(case.u));
-        }),
-        Function::of_numbers("sample_batch", |bounded, cases, at| {
-            let Cases { v, u, normals, values, .. } = cases;
-            let (normals, shares) = (&mut normals[at.clone()], &mut values[at.clone()]);
-            bounded.sample_batch(&v[at.clone()], &u[at], normals, shares).expect("of one length");
-        }),
+        each("at, drawn once", true, |bounded: &Bounded, at| bounded.at(at.v).sample(at.u)),
+        Function {
+            name: "sample_batch",
+            reads_numbers: true,
+            run: Box::new(|bounded, Cases { v, u, normals, values, .. }, at| {
+                let (normals, shares) = (&mut normals[at.clone()], &mut values[at.clone()]);
+                bounded
+                    .sample_batch(&v[at.clone()], &u[at], normals, shares)
+                    .expect("of one length");
+            }),
+        },
     ]
 }

@@ -13,19 +13,22 @@ use std::time::Instant;
 
 use glam::Vec3;
 use microfacet_sampler::{Ggx, MicrofacetDistribution, Skew, Tables};
+use serde::Serialize;
 
-use self::domain::{ELLIPSOIDS, GAMMAS, Numbers, SIGMAS, Views};
+use self::domain::{ELLIPSOIDS, GAMMAS, Numbers, RANDOM, SIGMAS, Views};
 use self::functions::{Cases, Function, common, of_bounded};
 pub(crate) use self::summary::{Summary, summaries};
 use crate::clock::median;
+use crate::files::shape;
 use crate::settings::Settings;
 
-/// One cell and its time.
-#[derive(Clone, Debug, PartialEq)]
+/// One cell and its time: a line of `sweep.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Cell {
     /// The lobe and its function.
     pub(crate) function: String,
     /// The shape.
+    #[serde(serialize_with = "shape")]
     pub(crate) gamma: f64,
     /// Roughness along x and y.
     pub(crate) sigma: [f64; 2],
@@ -40,10 +43,20 @@ pub(crate) struct Cell {
 }
 
 impl Cell {
+    /// The names of its numbers and texts.
+    pub(crate) const COLUMNS: [&str; 10] = [
+        "function", "gamma", "sigma_x", "sigma_y", "turn_x", "turn_y", "turn_z", "views",
+        "numbers", "ns",
+    ];
+
+    /// A material, before anything of it is measured.
+    fn of(lobe: &str, gamma: f64, sigma: [f64; 2], turns: [f64; 3]) -> Self {
+        Self { function: lobe.into(), gamma, sigma, turns, views: NONE, numbers: NONE, ns: 0.0 }
+    }
+
     /// Whether its inputs are what most calls of a renderer have.
     fn is_common(&self) -> bool {
-        self.views == Views::Random.name()
-            && (self.numbers == Numbers::Random.name() || self.numbers == NONE)
+        self.views == RANDOM && [RANDOM, NONE].contains(&self.numbers)
     }
 }
 
@@ -52,98 +65,87 @@ const NONE: &str = "-";
 
 /// Times all cells.
 pub(crate) fn cells(set: &Tables, settings: &Settings) -> Vec<Cell> {
-    let sweep = Sweep::new(settings);
-    let mut all = pass(set, &sweep);
-    for (cell, again) in all.iter_mut().zip(pass(set, &sweep)) {
+    let mut all = pass(set, settings);
+    for (cell, again) in all.iter_mut().zip(pass(set, settings)) {
         cell.ns = cell.ns.min(again.ns);
     }
     all
 }
 
 /// Times all cells once, always in the same order.
-fn pass(set: &Tables, sweep: &Sweep) -> Vec<Cell> {
-    let mut all = Vec::new();
+fn pass(set: &Tables, settings: &Settings) -> Vec<Cell> {
+    let mut sweep = Sweep::new(settings);
     for sigma in SIGMAS {
         let lobe = Ggx::new(sigma).expect("sigmas in range");
-        let cell = Material { lobe: "Ggx", gamma: 2.0, sigma, turns: [0.0; 3] };
-        sweep.lobe(&lobe, &lobe, &cell, &common(), [], &mut all);
+        sweep.lobe(&lobe, &lobe, &Cell::of("Ggx", 2.0, sigma, [0.0; 3]), &common(), []);
     }
     for gamma in GAMMAS {
         for sigma in SIGMAS {
             let lobe = set.student_t(sigma, gamma).expect("the set covers all shapes");
-            let cell = Material { lobe: "StudentT", gamma, sigma, turns: [0.0; 3] };
-            sweep.lobe(&lobe, &lobe, &cell, &common(), [], &mut all);
-            let cell = Material { lobe: "Bounded", ..cell };
+            let material = |lobe| Cell::of(lobe, gamma, sigma, [0.0; 3]);
+            sweep.lobe(&lobe, &lobe, &material("StudentT"), &common(), []);
             let bounded = lobe.clone().bounded();
-            sweep.lobe(&lobe, &bounded, &cell, &of_bounded(), [], &mut all);
+            sweep.lobe(&lobe, &bounded, &material("Bounded"), &of_bounded(), []);
         }
         for (sigma, turns) in ELLIPSOIDS {
             let skew = Skew::new(sigma, turns).expect("lobes that can be tilted so far");
             let lobe = set.ellipsoid(skew, gamma).expect("the set covers all shapes");
-            let cell = Material { lobe: "Ellipsoid", gamma, sigma, turns };
-            let below = Views::below_lobe(skew);
-            sweep.lobe(&lobe, &lobe, &cell, &common(), below, &mut all);
+            let material = Cell::of("Ellipsoid", gamma, sigma, turns);
+            sweep.lobe(&lobe, &lobe, &material, &common(), Views::below_lobe(skew));
         }
     }
-    all
+    sweep.cells
 }
 
-/// A lobe by its parameters.
-struct Material {
-    lobe: &'static str,
-    gamma: f64,
-    sigma: [f64; 2],
-    turns: [f64; 3],
-}
-
-/// The inputs of all cells, by class, and how much is measured of each.
+/// The inputs of all cells, by class, how much is measured of each, and what was measured.
 struct Sweep {
     seed: u64,
     batches: usize,
     calls: usize,
     views: Vec<(&'static str, Vec<Vec3>)>,
     numbers: Vec<(&'static str, Vec<[f32; 2]>)>,
+    cells: Vec<Cell>,
 }
 
 impl Sweep {
     fn new(settings: &Settings) -> Self {
         let &Settings { seed, sweep_batches: batches, sweep_calls: calls, .. } = settings;
         let count = batches * calls;
-        let views = Views::ALL.map(|views| (views.name(), views.draw(seed, count)));
-        let numbers = Numbers::ALL.map(|numbers| (numbers.name(), numbers.draw(seed, count)));
-        Self { seed, batches, calls, views: views.into(), numbers: numbers.into() }
+        let views = Views::all().map(|views| (views.name, views.draw(seed, count))).into();
+        let numbers = Numbers::ALL.map(|(name, of)| (name, of.draw(seed, count))).into();
+        Self { seed, batches, calls, views, numbers, cells: Vec::new() }
     }
 
     /// Times the functions of a subject, over all classes and more classes of views; the lobe draws
     /// the normals among their arguments.
     fn lobe<L>(
-        &self,
+        &mut self,
         lobe: &impl MicrofacetDistribution,
         subject: &L,
-        material: &Material,
+        material: &Cell,
         functions: &[Function<L>],
         more: impl IntoIterator<Item = Views>,
-        into: &mut Vec<Cell>,
     ) {
         let count = self.batches * self.calls;
-        let more = more.into_iter().map(|views| (views.name(), views.draw(self.seed, count)));
+        let more = more.into_iter().map(|views| (views.name, views.draw(self.seed, count)));
         let more: Vec<_> = more.collect();
+        let mut cells = Vec::new();
         for (views, v) in self.views.iter().chain(&more) {
             for (i, (numbers, u)) in self.numbers.iter().enumerate() {
                 let cases = &mut Cases::new(lobe, v, u);
-                let due = functions.iter().filter(|function| function.reads_numbers || i == 0);
-                let cells = due.map(|function| Cell {
-                    function: format!("{}::{}", material.lobe, function.name),
-                    gamma: material.gamma,
-                    sigma: material.sigma,
-                    turns: material.turns,
-                    views,
-                    numbers: if function.reads_numbers { numbers } else { NONE },
-                    ns: self.ns(subject, function, cases),
-                });
-                into.extend(cells);
+                for function in functions.iter().filter(|function| function.reads_numbers || i == 0)
+                {
+                    cells.push(Cell {
+                        function: format!("{}::{}", material.function, function.name),
+                        views,
+                        numbers: if function.reads_numbers { numbers } else { NONE },
+                        ns: self.ns(subject, function, cases),
+                        ..*material
+                    });
+                }
             }
         }
+        self.cells.extend(cells);
     }
 
     /// The median time of a call.

@@ -1,54 +1,59 @@
 //! What a sweep says of each function.
 
+use serde::Serialize;
+
 use super::Cell;
 
-/// The times of one function over its cells.
-#[derive(Clone, Debug, PartialEq)]
+/// The times of one function over its cells, in nanoseconds a call.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Summary {
+    pub(crate) function: String,
     /// The number of cells.
     pub(crate) cells: usize,
-    /// The median time of a call, in nanoseconds, of the cells with random views and numbers.
-    pub(crate) common: f64,
+    /// The median of the cells with random views and numbers.
+    pub(crate) common_ns: f64,
     /// The median of all cells.
-    pub(crate) median: f64,
+    pub(crate) median_ns: f64,
     /// What 99 of 100 cells do not exceed.
-    pub(crate) most: f64,
-    /// The slowest cell, which names the function, too.
+    pub(crate) percentile_99_ns: f64,
+    pub(crate) worst_ns: f64,
+    /// The slowest cell.
     pub(crate) worst: Cell,
 }
 
 impl Summary {
+    /// Of all cells of one function.
+    fn new(mut cells: Vec<&Cell>) -> Self {
+        cells.sort_by(|a, b| a.ns.total_cmp(&b.ns));
+        let common: Vec<&Cell> = cells.iter().copied().filter(|cell| cell.is_common()).collect();
+        let worst = cells[cells.len() - 1].clone();
+        Self {
+            function: worst.function.clone(),
+            cells: cells.len(),
+            common_ns: quantile(&common, 50),
+            median_ns: quantile(&cells, 50),
+            percentile_99_ns: quantile(&cells, 99),
+            worst_ns: worst.ns,
+            worst,
+        }
+    }
+
     /// The slowest cell over the common case.
     pub(crate) fn cliff(&self) -> f64 {
-        self.worst.ns / self.common
+        self.worst_ns / self.common_ns
     }
 }
 
 /// One for each function, in the order of their first cells.
 pub(crate) fn summaries(cells: &[Cell]) -> Vec<Summary> {
-    let mut names: Vec<&str> = Vec::new();
+    let mut by_function: Vec<Vec<&Cell>> = Vec::new();
     for cell in cells {
-        if !names.contains(&cell.function.as_str()) {
-            names.push(&cell.function);
+        match by_function.iter_mut().find(|of| of[0].function == cell.function) {
+            Some(of) => of.push(cell),
+            None => by_function.push(vec![cell]),
         }
     }
-    names
-        .into_iter()
-        .map(|name| summary(cells.iter().filter(|cell| cell.function == name)))
-        .collect()
-}
-
-fn summary<'a>(cells: impl Iterator<Item = &'a Cell>) -> Summary {
-    let mut cells: Vec<&Cell> = cells.collect();
-    cells.sort_by(|a, b| a.ns.total_cmp(&b.ns));
-    let common: Vec<&Cell> = cells.iter().copied().filter(|cell| cell.is_common()).collect();
-    Summary {
-        cells: cells.len(),
-        common: quantile(&common, 50),
-        median: quantile(&cells, 50),
-        most: quantile(&cells, 99),
-        worst: cells[cells.len() - 1].clone(),
-    }
+    by_function.into_iter().map(Summary::new).collect()
 }
 
 /// The least time that so many per cent of the cells, which are in order, do not exceed; NaN of
@@ -65,15 +70,7 @@ mod tests {
     use super::*;
 
     fn cell(function: &str, ns: f64) -> Cell {
-        Cell {
-            function: function.into(),
-            gamma: ns,
-            sigma: [1.0; 2],
-            turns: [0.0; 3],
-            views: "random",
-            numbers: "-",
-            ns,
-        }
+        Cell { views: "random", ns, ..Cell::of(function, ns, [1.0; 2], [0.0; 3]) }
     }
 
     #[test]
@@ -81,15 +78,21 @@ mod tests {
         let mut cells: Vec<Cell> = (1..=200).rev().map(|i| cell("b", f64::from(i))).collect();
         cells.insert(7, cell("a", 3.0));
         let [b, a] = summaries(&cells).try_into().unwrap();
-        assert_eq!((b.cells, b.median, b.most, b.worst.ns), (200, 100.0, 198.0, 200.0));
-        assert_eq!((b.worst.gamma, b.common, b.cliff()), (200.0, 100.0, 2.0));
+        assert_eq!(
+            (b.cells, b.median_ns, b.percentile_99_ns, b.worst_ns),
+            (200, 100.0, 198.0, 200.0)
+        );
+        assert_eq!((b.worst.gamma, b.common_ns, b.cliff()), (200.0, 100.0, 2.0));
         // Only cells with random views and numbers are the common case.
         for cell in cells.iter_mut().filter(|cell| cell.ns > 50.0) {
             let class = if cell.ns > 100.0 { &mut cell.views } else { &mut cell.numbers };
             *class = "other";
         }
         let b = &summaries(&cells)[0];
-        assert_eq!((b.common, b.median, b.cliff()), (25.0, 100.0, 8.0));
-        assert_eq!((a.worst.function.as_str(), a.cells, a.median, a.most), ("a", 1, 3.0, 3.0));
+        assert_eq!((b.common_ns, b.median_ns, b.cliff()), (25.0, 100.0, 8.0));
+        assert_eq!(
+            (a.function.as_str(), a.cells, a.median_ns, a.percentile_99_ns),
+            ("a", 1, 3.0, 3.0)
+        );
     }
 }

@@ -1,4 +1,7 @@
-//! The times that the cliffs are ratios of.
+//! The cliffs of the run-time crate: how much slower than its common case it can become.
+//!
+//! All times of this module take turns in one process, over the shapes of the sweep at one
+//! roughness. Calls are in a plain loop over arrays, as a user's program has them.
 
 use std::cell::RefCell;
 use std::hint::black_box;
@@ -8,16 +11,17 @@ use microfacet_sampler::{Ggx, MicrofacetDistribution, StudentT, Tables};
 
 use crate::clock::{self, Calls};
 use crate::conductors::{Hits, schlick_fresnel};
+use crate::figures::{CONDUCTOR_AIM, CONDUCTOR_MUST, Figure};
 use crate::inputs::Inputs;
-use crate::rivals::ggx;
-use crate::rows::normals;
-use crate::sampler::{in_a_loop, lobe};
+use crate::rival::{in_a_loop, lobe, normals};
+use crate::rivals::ggx::single::listed;
 use crate::settings::{SIGMA, Settings};
+use crate::sweep::Summary;
 use crate::sweep::domain::{GAMMAS, Numbers, Views, WHOLE};
 
 /// What is timed of a lobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum What {
+enum What {
     Sample,
     /// The same, of views that are put together from three arrays of components.
     SampleOfComponents,
@@ -35,19 +39,61 @@ pub(super) enum What {
     Conductor,
 }
 
-impl What {
-    const ALL: [Self; 10] = [
-        Self::Sample,
-        Self::SampleOfComponents,
-        Self::Batch,
-        Self::BatchOfEnds,
-        Self::BatchDown,
-        Self::Bounded,
-        Self::BoundedBatch,
-        Self::Density,
-        Self::TableDensity,
-        Self::Conductor,
-    ];
+/// The figures; those of ellipsoids are of the sweep.
+pub(crate) fn figures(set: &Tables, sweep: &[Summary], settings: &Settings) -> Vec<Figure> {
+    use What::*;
+    let times = Times::measure(set, settings);
+    let cliff = |function: &str| {
+        sweep.iter().find(|summary| summary.function == function).map(Summary::cliff)
+    };
+    let drop = |what| times.worst(what, peeled) / times.median(what, whole);
+    let by_caps = |what, layout: usize| times.worst(what, whole) / times.caps[layout];
+    let ggx = |layout: usize| times.ggx[layout] / times.caps[layout];
+    let by_hand = times.worst(Conductor, whole) / times.by_hand;
+    let density = times.worst(TableDensity, all) / times.median(Density, all);
+    let ratio = |name, must, aim, reached| Figure::ratio(name, must, aim, Some(reached));
+    vec![
+        ratio("Ggx sample / caps as listed", 1.0, 0.9, ggx(0)),
+        ratio("Ggx sample / caps, views by component", 1.0, 0.9, ggx(1)),
+        ratio("sample, worst gamma >= 1.8 / caps as listed", 1.25, 1.0, by_caps(Sample, 0)),
+        ratio(
+            "sample, gamma >= 1.8 / caps, views by component",
+            1.25,
+            1.0,
+            by_caps(SampleOfComponents, 1),
+        ),
+        ratio("sample, worst gamma < 1.8 / gamma >= 1.8", 2.0, 1.3, drop(Sample)),
+        ratio("sample_batch, worst gamma < 1.8 / gamma >= 1.8", 3.0, 1.5, drop(Batch)),
+        ratio(
+            "sample_batch, 5 % of u at an end / random",
+            1.3,
+            1.1,
+            times.ratio(BatchOfEnds, Batch),
+        ),
+        ratio(
+            "sample_batch, views straight down / random",
+            1.3,
+            1.1,
+            times.ratio(BatchDown, Batch),
+        ),
+        ratio("bounded, drawn once / sample", 1.6, 1.3, times.ratio(Bounded, Sample)),
+        ratio("bounded, batch / sample_batch", 1.5, 1.5, times.ratio(BoundedBatch, Batch)),
+        ratio(
+            "conductor, worst gamma >= 1.8 / GGX by hand",
+            CONDUCTOR_MUST,
+            CONDUCTOR_AIM,
+            by_hand,
+        ),
+        ratio("conductor, worst gamma < 1.8 / gamma >= 1.8", 2.0, 1.3, drop(Conductor)),
+        ratio("table_pdf, worst gamma / visible_normal_pdf", 4.0, 2.0, density),
+        Figure::ratio("Ellipsoid g1, worst / common case", 4.0, 2.0, cliff("Ellipsoid::g1")),
+        Figure::ratio(
+            "Ellipsoid sample, worst / common case",
+            4.0,
+            2.0,
+            cliff("Ellipsoid::sample_visible_normal"),
+        ),
+    ]
 }
 
 /// Random inputs, and two classes that are not.
@@ -64,7 +110,7 @@ impl Classes {
     fn new(settings: &Settings) -> Self {
         let random = Inputs::new(settings.seed, settings.calls);
         let numbers = Numbers::SomeAtEnds.draw(settings.seed, settings.calls);
-        let views = Views::Down.draw(settings.seed, settings.calls);
+        let views = Views::down().draw(settings.seed, settings.calls);
         Self {
             components: [0, 1, 2].map(|axis| random.views.iter().map(|v| v[axis]).collect()),
             ends: Inputs { numbers, ..random.clone() },
@@ -74,36 +120,33 @@ impl Classes {
         }
     }
 
-    /// The calls of one kind, of a lobe.
-    fn calls(&self, what: What, lobe: StudentT) -> Calls<'_> {
+    /// All that is timed of a lobe. A closure for each: one that is used twice is not inlined.
+    fn of_lobe(&self, lobe: &StudentT) -> [(What, Calls<'_>); 10] {
         let random = &self.random;
-        match what {
-            What::Sample => {
-                normals(in_a_loop(move |v, u| lobe.sample_visible_normal(v, u)), random)
-            }
-            What::SampleOfComponents => {
-                self.of_components(move |v, u| lobe.sample_visible_normal(v, u))
-            }
-            What::Batch => batch(lobe, random),
-            What::BatchOfEnds => batch(lobe, &self.ends),
-            What::BatchDown => batch(lobe, &self.down),
-            What::Bounded => {
-                let bounded = lobe.bounded();
-                normals(in_a_loop(move |v, u| bounded.at(v).sample(u)), random)
-            }
-            What::BoundedBatch => {
-                let shares = RefCell::new(vec![0.0; random.views.len()]);
-                let bounded = lobe.bounded();
-                let batch = move |v: &[Vec3], u: &[[f32; 2]], m: &mut [Vec3]| {
-                    let shares = &mut shares.borrow_mut()[..v.len()];
-                    bounded.sample_batch(v, u, m, shares).expect("of one length");
-                };
-                normals(batch, random)
-            }
-            What::Density => densities(lobe, random, StudentT::visible_normal_pdf),
-            What::TableDensity => densities(lobe, random, StudentT::table_pdf),
-            What::Conductor => self.hits.of_lobe(lobe, schlick_fresnel()),
-        }
+        let [a, b, c] = [(); 3].map(|()| lobe.clone());
+        let [one, many] = [(); 2].map(|()| lobe.clone().bounded());
+        let shares = RefCell::new(vec![0.0; random.views.len()]);
+        let bounded_batch = move |v: &[Vec3], u: &[[f32; 2]], m: &mut [Vec3]| {
+            let shares = &mut shares.borrow_mut()[..v.len()];
+            many.sample_batch(v, u, m, shares).expect("of one length");
+        };
+        let sample = in_a_loop(move |v, u| a.sample_visible_normal(v, u));
+        let bounded = in_a_loop(move |v, u| one.at(v).sample(u));
+        [
+            (What::Sample, normals(sample, random)),
+            (
+                What::SampleOfComponents,
+                self.of_components(move |v, u| b.sample_visible_normal(v, u)),
+            ),
+            (What::Batch, batch(lobe, random)),
+            (What::BatchOfEnds, batch(lobe, &self.ends)),
+            (What::BatchDown, batch(lobe, &self.down)),
+            (What::Bounded, normals(bounded, random)),
+            (What::BoundedBatch, normals(bounded_batch, random)),
+            (What::Density, densities(lobe, random, StudentT::visible_normal_pdf)),
+            (What::TableDensity, densities(lobe, random, StudentT::table_pdf)),
+            (What::Conductor, self.hits.of_lobe(c, schlick_fresnel())),
+        ]
     }
 
     /// Calls over arrays of components. A renderer's view, too, comes from three registers; a
@@ -124,16 +167,18 @@ impl Classes {
     }
 }
 
-fn batch(lobe: StudentT, inputs: &Inputs) -> Calls<'_> {
+fn batch<'a>(lobe: &StudentT, inputs: &'a Inputs) -> Calls<'a> {
+    let lobe = lobe.clone();
     normals(move |v, u, m| lobe.sample_batch(v, u, m).expect("of one length"), inputs)
 }
 
 /// Densities of the normals that the lobe itself draws.
 fn densities<'a>(
-    lobe: StudentT,
+    lobe: &StudentT,
     inputs: &'a Inputs,
     density: impl Fn(&StudentT, Vec3, Vec3) -> f32 + 'a,
 ) -> Calls<'a> {
+    let lobe = lobe.clone();
     let mut m = vec![Vec3::ZERO; inputs.views.len()];
     lobe.sample_batch(&inputs.views, &inputs.numbers, &mut m).expect("of one length");
     let mut values = vec![0.0; m.len()];
@@ -147,33 +192,36 @@ fn densities<'a>(
 }
 
 /// Nanoseconds a call.
-pub(super) struct Times {
+struct Times {
     /// GGX by spherical caps, as listed: of an array of views, and of arrays of components.
-    pub(super) caps: [f64; 2],
+    caps: [f64; 2],
     /// The closed form of the run-time crate, of the same.
-    pub(super) ggx: [f64; 2],
+    ggx: [f64; 2],
     /// The conductor of GGX by hand, with Schlick's reflectance.
-    pub(super) by_hand: f64,
+    by_hand: f64,
     /// Everything of a lobe, by γ.
     lobes: Vec<(f64, What, f64)>,
 }
 
 impl Times {
-    pub(super) fn measure(set: &Tables, settings: &Settings) -> Self {
+    fn measure(set: &Tables, settings: &Settings) -> Self {
         let classes = Classes::new(settings);
         let sigma = SIGMA as f32;
         let closed = Ggx::new(SIGMA).expect("a constant");
-        // A closure for each use: one that is used twice is not inlined.
         let mut runs = vec![
-            normals(in_a_loop(move |v, u| ggx::single::listed(sigma, v, u)), &classes.random),
-            classes.of_components(move |v, u| ggx::single::listed(sigma, v, u)),
+            normals(in_a_loop(move |v, u| listed(sigma, v, u)), &classes.random),
+            classes.of_components(move |v, u| listed(sigma, v, u)),
             normals(in_a_loop(move |v, u| closed.sample_visible_normal(v, u)), &classes.random),
             classes.of_components(move |v, u| closed.sample_visible_normal(v, u)),
             classes.hits.by_hand_schlick(),
         ];
-        let of_lobes = GAMMAS.iter().flat_map(|&gamma| What::ALL.map(|what| (gamma, what)));
-        let of_lobes: Vec<(f64, What)> = of_lobes.collect();
-        runs.extend(of_lobes.iter().map(|&(gamma, what)| classes.calls(what, lobe(set, gamma))));
+        let mut of_lobes = Vec::new();
+        for gamma in GAMMAS {
+            for (what, calls) in classes.of_lobe(&lobe(set, gamma)) {
+                of_lobes.push((gamma, what));
+                runs.push(calls);
+            }
+        }
         // There are so many that fewer rounds must suffice.
         let times = clock::medians(&mut runs, settings.rounds.div_ceil(4), settings.calls);
         let lobes = of_lobes.iter().zip(&times[5..]).map(|(&(gamma, what), &ns)| (gamma, what, ns));
@@ -191,35 +239,35 @@ impl Times {
         of_kind.map(|&(_, _, ns)| ns).collect()
     }
 
-    pub(super) fn median(&self, what: What, shapes: Shapes) -> f64 {
+    fn median(&self, what: What, shapes: Shapes) -> f64 {
         clock::median(self.of(what, shapes))
     }
 
-    pub(super) fn worst(&self, what: What, shapes: Shapes) -> f64 {
+    fn worst(&self, what: What, shapes: Shapes) -> f64 {
         self.of(what, shapes).into_iter().fold(0.0, f64::max)
     }
 
     /// The largest ratio of two times of the same shape.
-    pub(super) fn ratio(&self, what: What, to: What) -> f64 {
+    fn ratio(&self, what: What, to: What) -> f64 {
         let ratios = self.of(what, all).into_iter().zip(self.of(to, all)).map(|(a, b)| a / b);
         ratios.fold(0.0, f64::max)
     }
 }
 
 /// Some of the shapes.
-pub(super) type Shapes = fn(f64) -> bool;
+type Shapes = fn(f64) -> bool;
 
-pub(super) fn all(_: f64) -> bool {
+fn all(_: f64) -> bool {
     true
 }
 
 /// Those with a heavy part in closed form.
-pub(super) fn peeled(gamma: f64) -> bool {
+fn peeled(gamma: f64) -> bool {
     gamma < WHOLE
 }
 
 /// Those that are tabulated as a whole.
-pub(super) fn whole(gamma: f64) -> bool {
+fn whole(gamma: f64) -> bool {
     gamma >= WHOLE
 }
 
@@ -232,12 +280,8 @@ mod tests {
         let lobes = [(1.6, 60.0, 40.0), (1.79, 50.0, 200.0), (1.8, 10.0, 30.0), (4.0, 20.0, 20.0)];
         let lobes = lobes.into_iter().chain([(f64::INFINITY, 30.0, 30.0)]);
         let both = |(gamma, a, b)| [(gamma, What::Sample, a), (gamma, What::Bounded, b)];
-        let times = Times {
-            caps: [1.0; 2],
-            ggx: [1.0; 2],
-            by_hand: 1.0,
-            lobes: lobes.flat_map(both).collect(),
-        };
+        let lobes = lobes.flat_map(both).collect();
+        let times = Times { caps: [1.0; 2], ggx: [1.0; 2], by_hand: 1.0, lobes };
         assert_eq!(times.worst(What::Sample, peeled), 60.0);
         assert_eq!(times.worst(What::Sample, whole), 30.0);
         assert_eq!(times.median(What::Sample, whole), 20.0);

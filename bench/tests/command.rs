@@ -1,18 +1,46 @@
 //! The benchmark as a command: the files it writes and their values, never the times.
 
-mod common;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::process::{Command, Output};
 
-use std::collections::BTreeSet;
+fn run(folder: &Path, args: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_microfacet-bench"));
+    command.args(args).current_dir(folder).output().expect("runs")
+}
 
-use common::{Record, number, read, run};
+/// What it prints in a run that ends well.
+fn printed(folder: &Path, args: &[&str]) -> String {
+    let output = run(folder, args);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// A line of a table, by the names of its columns.
+type Record = BTreeMap<String, String>;
+
+fn read(path: &Path) -> Vec<Record> {
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    reader.deserialize().collect::<Result<_, _>>().unwrap()
+}
+
+fn number(record: &Record, column: &str) -> f64 {
+    record[column].parse().unwrap_or_else(|_| panic!("{column} of {record:?}"))
+}
+
+fn distinct<'a>(records: impl Iterator<Item = &'a Record>, column: &str) -> BTreeSet<String> {
+    records.map(|record| record[column].clone()).collect()
+}
+
+fn largest(records: &[Record], column: &str) -> f64 {
+    records.iter().map(|record| number(record, column).abs()).fold(0.0, f64::max)
+}
 
 #[test]
 fn every_rival_is_measured_and_written() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    let output = run(at, &["--quick", "--calls", "64", "--out", "out"]);
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-    let text = String::from_utf8(output.stdout).unwrap();
+    let text = printed(at, &["--quick", "--calls", "64", "--out", "out"]);
     for part in [
         "GGX, spherical caps",
         "table, default",
@@ -69,9 +97,6 @@ fn every_rival_is_measured_and_written() {
 /// The sweep has each function of each lobe over the whole domain, and its summaries are those of
 /// its cells.
 fn sweep_is_whole(cells: &[Record], json: &serde_json::Value) {
-    let distinct = |cells: &[&Record], column: &str| {
-        cells.iter().map(|cell| cell[column].clone()).collect::<BTreeSet<_>>()
-    };
     let summaries = json["sweep"].as_array().unwrap();
     // Eleven functions of every lobe, and one of Student-t alone.
     assert_eq!(summaries.len(), 3 * 11 + 2);
@@ -80,12 +105,13 @@ fn sweep_is_whole(cells: &[Record], json: &serde_json::Value) {
         let of_it: Vec<&Record> =
             cells.iter().filter(|cell| cell["function"] == function).collect();
         let lobe = function.split(':').next().unwrap();
-        let [gammas, views] = ["gamma", "views"].map(|column| distinct(&of_it, column).len());
+        let [gammas, views] =
+            ["gamma", "views"].map(|column| distinct(of_it.iter().copied(), column).len());
         let tilted = lobe == "Ellipsoid";
         assert_eq!(gammas, if lobe == "Ggx" { 1 } else { 15 }, "{function}");
         assert_eq!(views, if tilted { 7 } else { 5 }, "{function}");
-        assert!(matches!(distinct(&of_it, "numbers").len(), 1 | 3), "{function}");
-        assert_eq!(distinct(&of_it, "turn_y").len() > 1, tilted, "{function}");
+        assert!(matches!(distinct(of_it.iter().copied(), "numbers").len(), 1 | 3), "{function}");
+        assert_eq!(distinct(of_it.iter().copied(), "turn_y").len() > 1, tilted, "{function}");
 
         assert_eq!(summary["cells"], of_it.len());
         let times = of_it.iter().map(|cell| number(cell, "ns"));
@@ -105,6 +131,70 @@ fn sweep_is_whole(cells: &[Record], json: &serde_json::Value) {
     }
 }
 
+/// Figures 4 to 6 of the paper alone.
+#[test]
+fn each_figure_is_printed_and_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let text = printed(at, &["paper", "--quick", "--calls", "64", "--out", "out"]);
+    for part in ["figure 4", "over GGX's closed form", "figure 5", "0.7 %", "figure 6", "RMSE"] {
+        assert!(text.contains(part), "no `{part}` in {text}");
+    }
+    assert!(!text.contains("sweep"), "{text}");
+
+    // Every form in both rows, over both coordinates.
+    let times = read(&at.join("out/figure-4.csv"));
+    assert!(times.iter().all(|time| number(time, "ns") > 0.0));
+    for by in ["gamma", "sigma"] {
+        let of = |quantity: &'static str| {
+            times.iter().filter(move |at| at["quantity"] == quantity && at["by"] == by)
+        };
+        let forms = distinct(of("g1"), "method");
+        assert_eq!(forms, distinct(of("picture"), "method"));
+        assert!(of("normal").count() > 0);
+        for form in ["13-15", "21, integer", "22-23", "beta", "table", "GGX", "Beckmann"] {
+            assert!(forms.iter().any(|name| name.contains(form)), "no {form} in {forms:?}");
+        }
+        let table = |quantity| distinct(of(quantity).filter(|at| at["method"] == "table"), by);
+        assert!(table("g1").len() >= 8 && table("g1") == table("picture"), "{by}");
+    }
+
+    // What is found over θ in single precision is found over cot θ/σ in double. (For γ = 1.6 the
+    // largest error is at normal incidence, where no θ of the first stands.)
+    let errors = read(&at.join("out/figure-5.csv"));
+    assert!(largest(&errors, "table_error") < 1e-5);
+    let integrated = read(&at.join("out/figure-5-integrated.csv"));
+    for gamma in [3.0, 20.0, 40.0] {
+        let of = |all: &[Record]| -> Vec<Record> {
+            all.iter().filter(|at| number(at, "gamma") == gamma).cloned().collect()
+        };
+        let one = largest(&of(&errors), "rational_error");
+        let other = largest(&of(&integrated), "max");
+        assert!((one / other - 1.0).abs() < 0.01, "γ = {gamma}: {one} and {other}");
+    }
+    // The paper's 0.7 % holds for the mean, and not quite for the largest error.
+    let [mean, most] = ["relative", "max"].map(|column| largest(&integrated, column));
+    assert!((0.004..0.005).contains(&mean) && (0.007..0.0072).contains(&most), "{mean} {most}");
+
+    let pictures = read(&at.join("out/figure-6.csv"));
+    for picture in &pictures {
+        let rmse = number(picture, "rmse");
+        match picture["form"].as_str() {
+            "table" => assert!(rmse < 1e-6, "{picture:?}"),
+            _ => assert!((1e-4..1e-2).contains(&rmse), "{picture:?}"),
+        }
+    }
+
+    for (figure, word) in [(4, "hypergeometric"), (5, "rational"), (6, "table")] {
+        let drawn = std::fs::read_to_string(at.join(format!("out/figure-{figure}.svg"))).unwrap();
+        assert!(drawn.starts_with("<svg") && drawn.to_lowercase().contains(word), "{figure}");
+        let image = std::fs::read(at.join(format!("out/figure-{figure}.png"))).unwrap();
+        assert!(image.starts_with(b"\x89PNG"), "{figure}");
+    }
+    assert!(!at.join("out/bench.csv").exists());
+}
+
+/// Options may stand on either side of the part.
 #[test]
 fn what_cannot_be_measured_or_written_is_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -112,8 +202,13 @@ fn what_cannot_be_measured_or_written_is_refused() {
     for (args, word) in [
         (&["--calls", "0"][..], "16..=16384"),
         (&["--calls", "1000000"], "16..=16384"),
+        (&["paper", "--calls", "0"], "16..=16384"),
+        (&["--calls", "1000000", "paper"], "16..=16384"),
         (&["--seed", "one"], "--seed"),
         (&["--calls", "16", "--out", "file"], "file"),
+        (&["paper", "--out", "file"], "file"),
+        (&["--out", "file", "paper"], "file"),
+        (&["papers"], "papers"),
     ] {
         let output = run(folder.path(), args);
         let errors = String::from_utf8_lossy(&output.stderr);

@@ -1,0 +1,75 @@
+//! The functions of one direction that are compared: forms of Smith's G1, and of D. That of
+//! Student-t is a closed form for every γ, with a power where GGX has a square.
+
+use glam::Vec3;
+use microfacet_model as model;
+use microfacet_model::MicrofacetDistribution as _;
+use microfacet_sampler::MicrofacetDistribution as _;
+
+use crate::inputs::Inputs;
+use crate::rival::{Evaluate, Rival, each_value, lobe};
+use crate::rivals::lobe::Lobe;
+use crate::rivals::rational::Rational;
+use crate::rivals::{beckmann, ggx};
+use crate::settings::{GAMMA, SIGMA};
+use crate::tables::Slices;
+
+/// The name that figures refer to.
+pub(crate) const GGX: &str = "GGX, closed form";
+
+const BECKMANN: f64 = f64::INFINITY;
+
+fn form<'a>(name: &'static str, gamma: f64, one: impl Fn(Vec3) -> f32 + 'a) -> Rival<Evaluate<'a>> {
+    Rival::form(name, gamma, each_value(one))
+}
+
+/// The forms of G1, over the given tables.
+pub(crate) fn maskings(slices: &Slices) -> Vec<Rival<Evaluate<'static>>> {
+    let sigma = SIGMA as f32;
+    let (any, four) = (Lobe::any(SIGMA, GAMMA), Lobe::four(SIGMA));
+    let half = Lobe::three_and_a_half(SIGMA);
+    let rational = Rational::new(SIGMA, GAMMA);
+    let truth = model::StudentT::new(SIGMA, GAMMA).expect("constants");
+    let exact = move |w: Vec3| truth.g1(w.as_dvec3()) as f32;
+    let table = lobe(slices.default(), GAMMA);
+    let batch: Evaluate = Box::new(move |w, g1| table.g1_batch(w, g1).expect("of one length"));
+    let mut all = vec![
+        form(GGX, 2.0, move |w| ggx::g1(sigma, w)),
+        form("Beckmann, closed form", BECKMANN, move |w| beckmann::g1(sigma, w)),
+        form("Beckmann, rational fit", BECKMANN, move |w| beckmann::g1_rational(sigma, w)),
+        form("beta function, any gamma", GAMMA, move |w| any.g1(w)),
+        form("beta function, to rounding in f64", GAMMA, exact),
+        form("sum for integer gamma", GAMMA, move |w| four.g1(w)),
+        form("sum for half-integer gamma", 3.5, move |w| half.g1(w)),
+        form("rational approximation (eq. 22-23)", GAMMA, move |w| rational.g1(w)),
+        Rival::form("table, default, batch", GAMMA, batch).of(slices.default()),
+    ];
+    all.extend(slices.each().map(|(name, set)| {
+        let table = lobe(set, GAMMA);
+        form(name, GAMMA, move |w| table.g1(w)).of(set)
+    }));
+    all
+}
+
+/// The forms of D, of a shape below 1.8 and of Beckmann too.
+pub(crate) fn densities(slices: &Slices) -> Vec<Rival<Evaluate<'static>>> {
+    let sigma = SIGMA as f32;
+    let power = model::StudentT::new(SIGMA, GAMMA).expect("constants");
+    let mut all = vec![
+        form("GGX, closed form", 2.0, move |m| ggx::d(sigma, m)),
+        form("closed form in f64", GAMMA, move |m| power.d(m.as_dvec3()) as f32),
+    ];
+    all.extend([1.6, GAMMA, BECKMANN].map(|gamma| {
+        let lobe = lobe(slices.whole(), gamma);
+        form("closed form of the sampler crate", gamma, move |m| lobe.d(m))
+    }));
+    all
+}
+
+/// The normals to evaluate them for: those that the views of some inputs see.
+pub(crate) fn seen(slices: &Slices, inputs: &Inputs) -> Inputs {
+    let lobe = lobe(slices.whole(), GAMMA);
+    let mut views = inputs.views.clone();
+    lobe.sample_batch(&inputs.views, &inputs.numbers, &mut views).expect("of one length");
+    Inputs { views, ..inputs.clone() }
+}
