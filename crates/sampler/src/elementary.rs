@@ -9,8 +9,7 @@ use core::ops::{Add, Mul, Sub};
 
 use wide::{bytemuck, f32x4, i32x4};
 
-/// The sine and the cosine of 2πu for u ∈ [0, 1], to 2e-7 absolute, exact at quarters of a turn
-/// where they are 0.
+/// The sine and the cosine of 2πu for u ∈ [0, 1], to 2e-7 absolute, exact where they are 0.
 #[inline(always)]
 pub(crate) fn turn(u: f32) -> [f32; 2] {
     // Of x ∈ [−¼, ¼]; the polynomial errs by 7e-9.
@@ -70,7 +69,7 @@ pub(crate) fn scaled_power_of_growth(whole: f32, part: f32, power: f32, scale: f
 
 /// The whole number e and the half tangent t, |t| ≤ 0.2, of 1 + part/whole = 2ᵉ (1+t)/(1−t).
 ///
-/// Of one number, not of lanes: where nobody reads the other lanes, compilers leave anything there,
+/// Of one number, not of lanes: where the other lanes are not read, compilers leave anything there,
 /// and where that is subnormal it takes as long as five calls.
 #[inline(always)]
 fn growth(whole: f32, part: f32) -> [f32; 2] {

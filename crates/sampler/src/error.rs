@@ -94,12 +94,10 @@ impl fmt::Display for MaterialError {
                 "sigma = {sigma:?}: a roughness must lie in {}; below, treat the surface as smooth",
                 Range(*range)
             ),
-            Self::Gamma(x) => {
-                write!(
-                    f,
-                    "gamma = {x}: the shape must lie in (1.5, inf]; 2 is GGX, inf is Beckmann"
-                )
-            }
+            Self::Gamma(x) => write!(
+                f,
+                "gamma = {x}: the shape must lie in (1.5, inf]; 2 is GGX, inf is Beckmann"
+            ),
             Self::OtherDistribution { name, distribution } => write!(
                 f,
                 "material \"{name}\" is of the kind {distribution}, which has no dielectric albedo of \
@@ -123,12 +121,11 @@ impl fmt::Display for MaterialError {
                 f,
                 "gamma = {gamma} is not covered by the tables of this set, which serve {covered}"
             ),
-            Self::MaskingNotCovered { masking, other } => {
-                write!(f, "this set has no albedo tables for {masking} masking")?;
-                match other {
-                    Some(other) => write!(f, ", only for {other}"),
-                    None => write!(f, ", nor for any other"),
-                }
+            Self::MaskingNotCovered { masking, other: Some(other) } => {
+                write!(f, "this set has no albedo tables for {masking} masking, only for {other}")
+            }
+            Self::MaskingNotCovered { masking, other: None } => {
+                write!(f, "this set has no albedo tables for {masking} masking, nor for any other")
             }
             Self::SigmaNotCovered { sigma, range } => write!(
                 f,
@@ -183,8 +180,7 @@ microfacet_core::debug_in_words!(BatchError);
 
 impl core::error::Error for BatchError {}
 
-/// Checks that all slices of a batch have the length of the first; the error names one that has
-/// not.
+/// Checks that all slices of a batch have the length of the first.
 pub(crate) fn same_lengths(slices: &[(&'static str, usize)]) -> Result<(), BatchError> {
     let (first, expected) = slices[0];
     match slices.iter().find(|(_, length)| *length != expected) {

@@ -157,7 +157,6 @@ pub mod port;
 
 mod elementary;
 mod error;
-mod lanes;
 mod material;
 mod tables;
 

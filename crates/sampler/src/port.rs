@@ -1,4 +1,4 @@
-//! For whoever writes the lookups and BSDFs in another language: all that those of one shape read,
+//! For lookups and BSDFs written in another language: all that those of one shape read,
 //! in the form in which this crate's own have it. It may change in any release.
 
 use microfacet_tables::Table;

@@ -180,10 +180,6 @@ fn a_lobe_that_is_not_covered_is_told_what_the_set_serves() {
     let set = without(|table| table.kind == Kind::Shadowing);
     let message = set.student_t(0.3, 3.0).unwrap_err().to_string();
     assert!(message.ends_with("serve none") && set.shapes().is_empty(), "{message}");
-    for sigma in [0.0, 9e-9, 2e6, f64::NAN] {
-        let message = Tables::embedded().student_t(sigma, 3.0).unwrap_err().to_string();
-        assert!(message.contains("[1e-8, 1e6]"), "{message}");
-    }
 }
 
 /// A table that says it covers shapes beyond its axis would promise what no lobe can have.

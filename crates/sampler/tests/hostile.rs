@@ -4,7 +4,7 @@
 use glam::Vec3;
 
 use microfacet_core::shape::gamma_of_s;
-use microfacet_sampler::{Ggx, Lobe, Masking, MicrofacetDistribution, Skew, Tables};
+use microfacet_sampler::{Ggx, Lobe, Masking, MaterialError, MicrofacetDistribution, Skew, Tables};
 use microfacet_tables::axis::{HalfTangent, Rational};
 use microfacet_tables::{
     Axis, Certificate, Errors, Interpolation, Interval, Kind, LoadError, LobeSpec, Mapping,
@@ -98,10 +98,8 @@ fn every_truncation_is_refused() {
     let file = small_file();
     assert!(Tables::from_bytes(&file).unwrap().student_t(0.3, 2.0).is_ok());
     for length in 0..file.len() {
-        assert!(
-            matches!(Tables::from_bytes(&file[..length]), Err(LoadError::Invalid(_))),
-            "{length} bytes"
-        );
+        let read = Tables::from_bytes(&file[..length]);
+        assert!(matches!(read, Err(LoadError::Invalid(_))), "{length} bytes");
     }
     let longer = [&file[..], &[0]].concat();
     assert!(Tables::from_bytes(&longer).is_err());
@@ -306,27 +304,25 @@ fn schlick_is_one_number_where_its_channels_are_equal() {
 
 #[test]
 fn what_would_be_refused_is_not_written() {
-    let first = |change: fn(&mut MaterialEntry)| {
+    let first = |change: &dyn Fn(&mut MaterialEntry)| {
         let mut materials = materials();
         change(&mut materials[0]);
         encode(&Provenance { materials, ..Provenance::default() }, &small_tables())
             .unwrap_err()
             .to_string()
     };
-    for why in [
-        first(|material| material.lobe.roughness = Roughness::Isotropic([f64::NAN; 2].into())),
-        first(|material| {
-            material.lobe.roughness = Roughness::Isotropic([0.1, f64::INFINITY].into())
-        }),
-        first(|material| material.lobe.gamma.max = f64::NAN),
-        first(|material| material.lobe.roughness = Roughness::ALL),
-        first(|material| {
-            let (side, index) = (Side::Thin, [1.5; 2].into());
-            material.fresnel = Some(Reflectance::Interface { side, index });
-        }),
-        first(|material| material.lobe.theta = Some([f64::NAN; 3])),
-        first(|material| material.fresnel = Some(Reflectance::Schlick([0.5, f64::NAN, 0.5]))),
-    ] {
+    let inf = f64::INFINITY;
+    let interface = |side| Reflectance::Interface { side, index: [1.5; 2].into() };
+    let changes: [&dyn Fn(&mut MaterialEntry); 7] = [
+        &|of| of.lobe.roughness = Roughness::Isotropic([f64::NAN; 2].into()),
+        &|of| of.lobe.roughness = Roughness::Isotropic([0.1, inf].into()),
+        &|of| of.lobe.gamma.max = f64::NAN,
+        &|of| of.lobe.roughness = Roughness::ALL,
+        &|of| of.fresnel = Some(interface(Side::Thin)),
+        &|of| of.lobe.theta = Some([f64::NAN; 3]),
+        &|of| of.fresnel = Some(Reflectance::Schlick([0.5, f64::NAN, 0.5])),
+    ];
+    for why in changes.map(first) {
         assert!(why.contains("`tilted`"), "{why}");
     }
 }
@@ -534,14 +530,22 @@ fn random_numbers_are_clamped() {
 #[test]
 fn roughness_and_shape_out_of_range_are_refused_by_value() {
     let tables = Tables::embedded();
-    for sigma in [0.0_f32, -1.0, 1e-9, 1e7, f32::INFINITY, f32::NAN] {
-        let error = tables.student_t([0.3, sigma], 2.0).unwrap_err().to_string();
-        assert!(error.contains("sigma") && error.contains("[1e-8, 1e6]"), "{error}");
-        assert!(tables.student_t(0.3_f32, 2.0).unwrap().with_roughness(sigma).is_err());
+    for sigma in [0.0, -1.0, 1e-9, 9e-9, 2e6, 1e7, f64::INFINITY, f64::NAN] {
+        let why = tables.student_t([0.3, sigma], 2.0).unwrap_err();
+        assert!(matches!(why, MaterialError::Sigma { .. }));
+        let text = why.to_string();
+        assert!(text.contains("sigma") && text.contains("[1e-8, 1e6]"), "{text}");
+        assert!(tables.student_t(sigma, 3.0).is_err());
+        assert!(tables.student_t(0.3, 2.0).unwrap().with_roughness(sigma as f32).is_err());
     }
     for gamma in [f64::NAN, 1.5, 1.0, 0.0, -3.0, f64::NEG_INFINITY] {
-        assert!(tables.student_t(0.3_f32, gamma).unwrap_err().to_string().contains("(1.5, inf]"));
+        let why = tables.student_t(0.3, gamma).unwrap_err();
+        assert!(matches!(why, MaterialError::Gamma(_)) && why.to_string().contains("(1.5, inf]"));
     }
     // Legal, but with a heavier tail than any table.
-    assert!(tables.student_t(0.3_f32, 1.5005).unwrap_err().to_string().contains("not covered"));
+    let why = tables.student_t(0.3, 1.5005).unwrap_err().to_string();
+    for part in ["1.5005", "not covered", "take gamma = 1.501 or more"] {
+        assert!(why.contains(part), "{why}");
+    }
+    assert!(tables.material("glass").unwrap_err().to_string().contains("no named materials"));
 }

@@ -5,6 +5,7 @@ use alloc::format;
 use alloc::vec::Vec;
 
 use glam::Vec3;
+use microfacet_core::Masking;
 use microfacet_core::math::unit;
 use microfacet_tables::axis::lagrange::{SIX, combine};
 use microfacet_tables::axis::{PreparedAzimuth, PreparedCritical, PreparedView, ViewBlend};
@@ -17,8 +18,7 @@ use crate::error::MaterialError;
 /// The largest number of channels of an albedo table.
 const CHANNELS: usize = 4;
 
-/// Where the axes before that of the view are collapsed; a table without one of these axes ignores
-/// its quantity.
+/// Where the axes before that of the view are collapsed, as far as a table has them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MaterialPoint {
     pub(super) sigma: f64,
@@ -73,8 +73,7 @@ impl MaterialWeights {
     }
 }
 
-/// A quantity, or an end of a range that differs from it by no more than the rounding of single
-/// precision, in which lobes take their numbers.
+/// A quantity, or an end of a range that is the same in single precision, in which lobes take it.
 fn end(x: f64, ends: [f64; 2]) -> f64 {
     // Every number is within the rounding of an infinite end.
     let same = |end: &f64| *end < f64::INFINITY && (x - end).abs() <= f64::from(f32::EPSILON) * end;
@@ -143,6 +142,30 @@ impl<const N: usize> ViewCurve<N> {
             (quantities, all.fold(0, |bits, x| 2 * bits + u32::from(x == 0.0 || x == 1.0)))
         })
     }
+}
+
+/// Directional albedo of one bounce off a rough dielectric under its exact reflectance: the shares
+/// of light reflected and transmitted.
+///
+/// What is missing to one is shadowed, and left to further bounces.
+#[derive(Clone, Debug)]
+pub struct DielectricAlbedo {
+    /// The form of masking that it is for.
+    pub masking: Masking,
+    /// Seen from outside: [reflection, transmission] by the view outside.
+    pub outside: ViewCurve<2>,
+    /// Seen from inside: [reflection, transmission] by the view inside; z points to the side of the
+    /// view.
+    pub inside: ViewCurve<2>,
+}
+
+/// Directional albedo of one bounce under an exact reflectance, other than F = 1.
+#[derive(Clone, Debug)]
+pub enum FresnelAlbedo {
+    /// Off a conductor: red, green and blue.
+    Conductor(ViewCurve<3>),
+    /// Off and through a dielectric.
+    Dielectric(DielectricAlbedo),
 }
 
 /// The error for a table that does not hold what was asked for.
@@ -262,8 +285,7 @@ impl Curve {
         self.interpolate(rows, view.six(cos, self.views))
     }
 
-    /// Cosine-weighted averages, over the hemisphere of views, of N quantities that are functions
-    /// of azimuths, elevation and cos θ.
+    /// Cosine-weighted averages over views of functions of azimuths, elevation and cos θ.
     pub(super) fn average<const N: usize>(
         &self,
         quantities: impl Fn(&Rows, &Elevation<'_>, f32) -> At<N>,

@@ -34,8 +34,7 @@ impl Elevation<'_> {
         }
     }
 
-    /// The ends of the parts of equal width in t, at which it turns sharply; none of a smooth
-    /// coordinate.
+    /// The ends of the parts of equal width in t, at which it turns sharply, if there are any.
     pub(super) fn ends(&self) -> &[f64] {
         match self {
             Self::Blend(_) => &[],

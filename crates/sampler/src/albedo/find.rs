@@ -3,10 +3,9 @@
 use microfacet_core::Masking;
 use microfacet_tables::{Kind, LobeForm, MaterialEntry, Reflectance, Side, Table};
 
-use super::curve::{MaterialPoint, MaterialWeights, ViewCurve};
+use super::curve::{DielectricAlbedo, FresnelAlbedo, MaterialPoint, MaterialWeights, ViewCurve};
 use super::directional::Albedo;
 use super::domain::{dielectrics, domains, smallest_sigma};
-use super::fresnel::{DielectricAlbedo, FresnelAlbedo};
 use super::moments::Moments;
 use crate::error::MaterialError;
 use crate::tables::Tables;

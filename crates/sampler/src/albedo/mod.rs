@@ -3,7 +3,7 @@
 //!
 //! One mechanism serves every lobe and reflectance: `find` chooses the table by its description,
 //! `curve` collapses the axes of the material, which leaves a curve over the view, and
-//! `directional` or `fresnel` say what its channels mean.
+//! `directional` says what the channels of moments mean.
 //!
 //! The averages of reflectances over the hemisphere belong to a compensation of your own.
 
@@ -13,13 +13,11 @@ mod directional;
 mod domain;
 mod elevation;
 mod find;
-mod fresnel;
 mod moments;
 mod reflectance_average;
 pub(crate) mod shape;
 
-pub use curve::ViewCurve;
+pub use curve::{DielectricAlbedo, FresnelAlbedo, ViewCurve};
 pub use directional::Albedo;
-pub use fresnel::{DielectricAlbedo, FresnelAlbedo};
 pub use moments::Moments;
 pub use reflectance_average::{f82_tint_average, fresnel_average, schlick_average};

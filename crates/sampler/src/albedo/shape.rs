@@ -1,4 +1,4 @@
-//! The albedos of one shape for all roughnesses, for whoever writes them in another language.
+//! The albedos of one shape for all roughnesses, for exports to other languages.
 
 use alloc::vec::Vec;
 

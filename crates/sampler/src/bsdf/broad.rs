@@ -111,6 +111,12 @@ impl Broad {
         Vec3::new(r * cos, r * sin, sqrt(square))
     }
 
+    /// The same; `None` in the horizon.
+    #[inline]
+    pub(super) fn sample_above(&self, u: [f32; 2]) -> Option<Vec3> {
+        Some(self.sample(u)).filter(|l| l.z > 0.0)
+    }
+
     /// The density over that of the cosine, at a direction or its opposite.
     #[inline(always)]
     pub(super) fn factor(&self, l: Vec3) -> f32 {

@@ -116,18 +116,17 @@ impl<const N: usize> Returned<N> {
         Part::broad(l, broad, 1.0, bounces.map(|factor| factor * lobe))
     }
 
-    /// A light drawn from it, or where there is none by the cosine.
+    /// The density of its lights, or where there is none that of the cosine.
     #[inline]
-    pub(super) fn sample(&self, u: [f32; 2]) -> Vec3 {
+    pub(super) fn broad(&self) -> &Broad {
         match &self.form {
-            Form::Turquin { .. } => Broad::COSINE.sample(u),
-            Form::KullaConty { broad, .. } => broad.sample(u),
+            Form::Turquin { .. } => &Broad::COSINE,
+            Form::KullaConty { broad, .. } => broad,
         }
     }
 }
 
-/// The share of facets in the light that returns, from the means of their reflectance and of the
-/// factor of further bounces.
+/// The share of facets in the light that returns, from the means of both reflectances.
 #[inline(always)]
 fn estimate(lost: f32, single: f32, multiple: f32) -> f32 {
     let (facets, broad) = ((1.0 - lost) * single, lost * multiple);

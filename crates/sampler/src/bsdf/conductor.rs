@@ -94,8 +94,7 @@ impl<L: MicrofacetDistribution, const N: usize> Conductor<L, N> {
         Facets { lobe: &self.lobe, masking: self.masking }
     }
 
-    /// One bounce together with what is given back of the light that it loses, at a light above the
-    /// horizon.
+    /// One bounce and what is given back of the light that it loses, at a light from above.
     #[inline(always)]
     fn mixture(&self, returned: &Returned<N>, lost: f32, l: Vec3, white: White) -> Mixture<N> {
         let single = white.part(self.fresnel.at(white.cos));
@@ -122,10 +121,7 @@ impl<L: MicrofacetDistribution, const N: usize> Conductor<L, N> {
         let (l, white) = if is_facet {
             self.facets().draw(v, u)?
         } else {
-            let l = returned.sample(u);
-            if !(l.z > 0.0) {
-                return None;
-            }
+            let l = returned.broad().sample_above(u)?;
             (l, self.facets().halfway(v, l))
         };
         let mixture = self.mixture(returned, lost, l, white);

@@ -52,8 +52,7 @@ pub struct Dielectric<L, const N: usize = 3> {
     returned: Option<Box<Returned>>,
 }
 
-/// The accounts of a compensation, and the densities from which the light of further bounces is
-/// drawn on either side.
+/// The accounts of a compensation, and the densities of its lights on either side.
 #[derive(Clone, Debug)]
 struct Returned {
     energy: Energy,

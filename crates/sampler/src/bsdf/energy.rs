@@ -12,8 +12,7 @@ use glam::Vec3;
 /// The accounts of one interface.
 #[derive(Clone, Debug)]
 pub(super) struct Energy {
-    /// The albedos of one bounce, from both sides; `None` of a smooth interface, which loses
-    /// nothing.
+    /// The albedos of one bounce; `None` of a smooth interface, which loses nothing.
     albedo: Option<DielectricAlbedo>,
     compensation: Compensation,
     eta: f32,

@@ -58,11 +58,8 @@ impl fmt::Display for BindError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Index { name, value, range } => {
-                write!(
-                    f,
-                    "{name} = {value}: an index of refraction must lie in {}",
-                    Range(*range)
-                )?;
+                let range = Range(*range);
+                write!(f, "{name} = {value}: an index of refraction must lie in {range}")?;
                 if *name == "eta" { write!(f, "; n inside over n outside") } else { Ok(()) }
             }
             Self::Reflectance { name, value } => {
@@ -80,16 +77,14 @@ impl fmt::Display for BindError {
                 Ok(())
             }
             Self::RoundOnly { stand_in } => {
+                let cure = match stand_in {
+                    true => "let the round lobe stand in with `StandIn::Round`",
+                    false => "take a lobe of the family, or a dielectric without compensation",
+                };
                 write!(
                     f,
-                    "tables hold albedos of dielectrics for round lobes of the family alone; "
-                )?;
-                match stand_in {
-                    true => write!(f, "let the round lobe stand in with `StandIn::Round`"),
-                    false => {
-                        write!(f, "take a lobe of the family, or a dielectric without compensation")
-                    }
-                }
+                    "tables hold albedos of dielectrics for round lobes of the family alone; {cure}"
+                )
             }
             Self::Material(why) => why.fmt(f),
             Self::NoFresnel(name) => write!(

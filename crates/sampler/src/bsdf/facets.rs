@@ -29,8 +29,7 @@ pub(super) struct White {
 // goes through memory, written by one width and read by another, and waits there for all that was
 // written before. It took longer than the arithmetic.
 impl<L: MicrofacetDistribution> Facets<'_, L> {
-    /// A light that is reflected off a facet drawn for the view; `None` where it is not above the
-    /// horizon.
+    /// A light off a facet drawn for the view; `None` where it is not above the horizon.
     #[inline(always)]
     pub(super) fn draw(&self, v: Vec3, u: [f32; 2]) -> Option<(Vec3, White)> {
         let (m, share) = self.lobe.sample_reflecting_normal(v, u);

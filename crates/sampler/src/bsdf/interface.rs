@@ -88,8 +88,7 @@ impl Interface {
         dielectric(self.eta, facing.min(1.0))
     }
 
-    /// The light that a facet of normal m, v·m = `facing`, refracts, and what its density needs;
-    /// `None` where all light is reflected.
+    /// The light that a facet of v·m = `facing` refracts; `None` where all light is reflected.
     #[inline(always)]
     pub(super) fn refract(self, v: Vec3, m: Vec3, facing: f32) -> Option<(Vec3, Refraction)> {
         let eta = self.eta;

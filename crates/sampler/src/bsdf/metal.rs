@@ -63,88 +63,75 @@ pub enum Metal {
     Tungsten,
 }
 
-/// What is known of a metal.
-struct Row {
-    metal: Metal,
-    name: &'static str,
-    eta: [f64; 3],
-    k: [f64; 3],
-    /// Where the index was published.
-    source: &'static str,
-}
-
 const JOHNSON_1972: &str = "https://doi.org/10.1103/PhysRevB.6.4370";
 const JOHNSON_1974: &str = "https://doi.org/10.1103/PhysRevB.9.5056";
 const QUERRY_1985: &str = "https://apps.dtic.mil/sti/citations/ADA158623";
 const RAKIC_1995: &str = "https://doi.org/10.1364/AO.34.004755";
 const RAKIC_1998: &str = "https://doi.org/10.1364/AO.37.005271";
 
-impl Row {
-    const fn new(
-        metal: Metal,
-        name: &'static str,
-        eta: [f64; 3],
-        k: [f64; 3],
-        source: &'static str,
-    ) -> Self {
-        Self { metal, name, eta, k, source }
-    }
-}
-
-/// One row for each metal, in the order of the enum.
-static ROWS: [Row; 12] = {
-    use Metal::*;
-    [
-        Row::new(Gold, "gold", [0.156, 0.424, 1.383], [3.602, 2.472, 1.916], JOHNSON_1972),
-        Row::new(Silver, "silver", [0.052, 0.060, 0.040], [4.409, 3.597, 2.648], JOHNSON_1972),
-        Row::new(Copper, "copper", [0.238, 1.007, 1.240], [3.626, 2.582, 2.393], JOHNSON_1972),
-        Row::new(Aluminium, "aluminium", [1.558, 1.015, 0.633], [7.712, 6.627, 5.454], RAKIC_1995),
-        Row::new(Iron, "iron", [2.911, 2.950, 2.585], [3.089, 2.932, 2.767], JOHNSON_1974),
-        Row::new(Chromium, "chromium", [3.107, 3.181, 2.323], [3.331, 3.329, 3.135], JOHNSON_1974),
-        Row::new(Titanium, "titanium", [2.741, 2.542, 2.267], [3.814, 3.435, 3.039], JOHNSON_1974),
-        Row::new(Nickel, "nickel", [1.990, 1.921, 1.729], [4.209, 3.616, 2.944], JOHNSON_1974),
-        Row::new(Platinum, "platinum", [2.376, 2.085, 1.845], [4.265, 3.715, 3.136], RAKIC_1998),
-        Row::new(Brass, "brass", [0.444, 0.527, 1.094], [3.695, 2.765, 1.829], QUERRY_1985),
-        Row::new(Cobalt, "cobalt", [2.237, 2.052, 1.737], [4.236, 3.824, 3.275], JOHNSON_1974),
-        Row::new(Tungsten, "tungsten", [3.652, 3.506, 3.313], [2.795, 2.758, 2.605], RAKIC_1998),
-    ]
-};
-
 impl Metal {
     /// All metals.
-    pub const ALL: [Self; 12] = {
-        let mut all = [Self::Gold; 12];
-        let mut i = 0;
-        while i < all.len() {
-            all[i] = ROWS[i].metal;
-            assert!(all[i] as usize == i, "the rows are in the order of the enum");
-            i += 1;
-        }
-        all
-    };
+    pub const ALL: [Self; 12] = [
+        Self::Gold,
+        Self::Silver,
+        Self::Copper,
+        Self::Aluminium,
+        Self::Iron,
+        Self::Chromium,
+        Self::Titanium,
+        Self::Nickel,
+        Self::Platinum,
+        Self::Brass,
+        Self::Cobalt,
+        Self::Tungsten,
+    ];
 
-    const fn row(self) -> &'static Row {
-        &ROWS[self as usize]
+    /// What is known of it: its name, η, k, and where they were published.
+    const fn row(self) -> (&'static str, [f64; 3], [f64; 3], &'static str) {
+        match self {
+            Self::Gold => ("gold", [0.156, 0.424, 1.383], [3.602, 2.472, 1.916], JOHNSON_1972),
+            Self::Silver => ("silver", [0.052, 0.060, 0.040], [4.409, 3.597, 2.648], JOHNSON_1972),
+            Self::Copper => ("copper", [0.238, 1.007, 1.240], [3.626, 2.582, 2.393], JOHNSON_1972),
+            Self::Aluminium => {
+                ("aluminium", [1.558, 1.015, 0.633], [7.712, 6.627, 5.454], RAKIC_1995)
+            }
+            Self::Iron => ("iron", [2.911, 2.950, 2.585], [3.089, 2.932, 2.767], JOHNSON_1974),
+            Self::Chromium => {
+                ("chromium", [3.107, 3.181, 2.323], [3.331, 3.329, 3.135], JOHNSON_1974)
+            }
+            Self::Titanium => {
+                ("titanium", [2.741, 2.542, 2.267], [3.814, 3.435, 3.039], JOHNSON_1974)
+            }
+            Self::Nickel => ("nickel", [1.990, 1.921, 1.729], [4.209, 3.616, 2.944], JOHNSON_1974),
+            Self::Platinum => {
+                ("platinum", [2.376, 2.085, 1.845], [4.265, 3.715, 3.136], RAKIC_1998)
+            }
+            Self::Brass => ("brass", [0.444, 0.527, 1.094], [3.695, 2.765, 1.829], QUERRY_1985),
+            Self::Cobalt => ("cobalt", [2.237, 2.052, 1.737], [4.236, 3.824, 3.275], JOHNSON_1974),
+            Self::Tungsten => {
+                ("tungsten", [3.652, 3.506, 3.313], [2.795, 2.758, 2.605], RAKIC_1998)
+            }
+        }
     }
 
     /// The name in English, in lower case.
     pub const fn name(self) -> &'static str {
-        self.row().name
+        self.row().0
     }
 
     /// Index of refraction at 650, 550 and 450 nm: for red, green and blue.
     pub const fn eta(self) -> [f64; 3] {
-        self.row().eta
+        self.row().1
     }
 
     /// Extinction coefficient at 650, 550 and 450 nm: for red, green and blue.
     pub const fn k(self) -> [f64; 3] {
-        self.row().k
+        self.row().2
     }
 
     /// The address of the publication: a DOI where it has one.
     pub const fn source(self) -> &'static str {
-        self.row().source
+        self.row().3
     }
 }
 

@@ -17,8 +17,7 @@ pub(super) struct Part<const N: usize> {
 impl<const N: usize> Part<N> {
     pub(super) const NONE: Self = Self { weight: [0.0; N], pdf: 0.0 };
 
-    /// The broad lobe at a light: the share of it that is on the side of that light, and π f over
-    /// that share.
+    /// The broad lobe at a light: its share on the side of that light, and π f over that share.
     #[inline(always)]
     pub(super) fn broad(l: Vec3, broad: &Broad, share: f32, lobe: [f32; N]) -> Self {
         let factor = broad.factor(l);
@@ -77,15 +76,13 @@ impl<const N: usize> Mixture<N> {
     }
 }
 
-/// A choice in [0, 1] (clamped to it, NaN to 0), less than 1: at 1 it would choose what has the
-/// probability 0.
+/// A choice clamped to [0, 1), NaN to 0: at 1 it would choose what has the probability 0.
 #[inline(always)]
 pub(super) fn choice(choice: f32) -> f32 {
     unit(choice).min(1.0 - 0.5 * f32::EPSILON)
 }
 
-/// Whether a [`choice`] takes the first of two parts, of probability `p`, and the choice that is
-/// left to make within the part.
+/// Whether a [`choice`] takes a part of probability `p`, and the choice that is left within it.
 #[inline(always)]
 pub(super) fn chosen(number: f32, p: f32) -> (bool, f32) {
     // The latter may round to 1.

@@ -15,7 +15,6 @@ use super::interface::{Interface, checked};
 use super::mixture::{Mixture, Part, are_finite, choice, chosen};
 use super::reflectance::reflectances;
 use super::{Bsdf, BsdfSample, Transport};
-use crate::albedo::DielectricAlbedo;
 use crate::material::MicrofacetDistribution;
 use crate::tables::Tables;
 
@@ -111,26 +110,6 @@ impl<L: MicrofacetDistribution, const N: usize> Plastic<L, N> {
         }
         let albedo = tables.dielectric_albedo_of(&lobe, eta, masking, stand_in)?;
         Self::made(lobe, eta, base, masking, |eta| Energy::rough(albedo, compensation, eta))
-    }
-
-    /// The same by albedos that are at hand, which must be of the same lobe and index; their form
-    /// of masking becomes that of the plastic.
-    ///
-    /// # Errors
-    /// [`BindError`] for an η outside [1e-3, 1e3] or a ρ outside [0, 1].
-    pub fn with_albedo(
-        lobe: L,
-        eta: f64,
-        base: [f32; N],
-        albedo: DielectricAlbedo,
-        compensation: Compensation,
-    ) -> Result<Self, BindError> {
-        let masking = albedo.masking;
-        let smooth = is_smooth(&lobe, checked(eta)?);
-        Self::made(lobe, eta, base, masking, |eta| match smooth {
-            true => Energy::smooth(eta),
-            false => Energy::rough(albedo, compensation, eta),
-        })
     }
 
     fn made(
@@ -243,18 +222,14 @@ impl<L: MicrofacetDistribution, const N: usize> Bsdf<N> for Plastic<L, N> {
         let shares = self.energy.shares(OUTSIDE, v);
         let p = self.facets_share(&shares);
         let (is_facet, _) = chosen(choice(number), p);
-        let (l, facets) = if is_facet {
-            if self.smooth {
-                return Some(BsdfSample::mirrored(v, [shares.reflection / p; N]));
-            }
+        let (l, facets) = if !is_facet {
+            let l = self.broad.sample_above(u)?;
+            (l, self.halfway(&shares, v, l))
+        } else if self.smooth {
+            return Some(BsdfSample::mirrored(v, [shares.reflection / p; N]));
+        } else {
             let (l, white) = self.facets().draw(v, u)?;
             (l, self.coat(&shares, white))
-        } else {
-            let l = self.broad.sample(u);
-            if !(l.z > 0.0) {
-                return None;
-            }
-            (l, self.halfway(&shares, v, l))
         };
         let mixture = Mixture { p, facets, broad: self.diffuse(&shares, l) };
         Some(BsdfSample::reflected(l, mixture.weight(), mixture.pdf()))

@@ -17,8 +17,7 @@ use microfacet_tables::axis::hermite::{Cell, cubic_cells, horner, locate};
 use super::student_t::{Stretched, StudentT};
 use crate::elementary::{exp2, log2};
 
-/// Up to this a the excess is a difference from the shadowing table; for larger a that difference
-/// loses digits.
+/// Up to this a the excess is a difference from the shadowing table, which loses digits beyond.
 const NEAR: f32 = 0.8;
 /// Cells of [`ExcessShare`].
 const CELLS: usize = 32;

@@ -20,12 +20,12 @@ use microfacet_core::math::unit;
 use microfacet_tables::axis::hermite::split;
 use wide::f32x4;
 
-use super::batch::{LANES, coefficients, transpose};
 use super::distribution::{Facet, MicrofacetDistribution};
 use super::key::LobeKey;
-use super::sample::first_three;
+use super::lanes::first_three;
+use super::lanes::four::{LANES, coefficients, transpose};
+use super::lanes::views::{View, Views};
 use super::student_t::StudentT;
-use super::views::{View, Views};
 use crate::error::{BatchError, same_lengths};
 
 /// Cells of the slope x : z by x/(|x| + z), over [−1, 1], and rows of the table between two rows of
@@ -84,19 +84,16 @@ pub struct BoundedView<'a> {
     share: f32,
 }
 
-impl StudentT {
-    /// Prepares the visible normals of every view for reflection.
-    ///
-    /// For γ < 1.8 (in the default set) only the end away from the viewer is restricted.
-    pub fn bounded(self) -> Bounded {
-        let last = self.slices.rows;
+impl Bounded {
+    pub(super) fn new(lobe: StudentT) -> Self {
+        let last = lobe.slices.rows;
         // The exact numbers at all rows and, between the nodes of the limits, some slopes.
         let fine = BETWEEN * CELLS;
         let numbers = |row: usize| -> Vec<f64> {
-            let rows = self.row(row);
+            let rows = lobe.row(row);
             let at = |i: usize| {
                 let x = -1.0 + i as f64 * (2.0 / fine as f64);
-                self.number_along(&rows, x, 1.0 - x.abs())
+                lobe.number_along(&rows, x, 1.0 - x.abs())
             };
             (0..=fine).map(at).collect()
         };
@@ -139,11 +136,9 @@ impl StudentT {
             .map(|(g, c)| limit(g, c))
             .collect();
         limits.push([0.0, 1.0]);
-        Bounded { lobe: self, limits }
+        Self { lobe, limits }
     }
-}
 
-impl Bounded {
     /// The lobe, for all that concerns evaluation.
     pub fn lobe(&self) -> &StudentT {
         &self.lobe
@@ -157,10 +152,10 @@ impl Bounded {
     /// The normals of a view.
     #[inline]
     pub fn at(&self, v: Vec3) -> BoundedView<'_> {
-        let view = if self.lobe.slices.fast.plain {
-            self.lobe.view::<false>(v)
-        } else {
+        let view = if self.lobe.slices.peeled {
             self.lobe.view::<true>(v)
+        } else {
+            self.lobe.view::<false>(v)
         };
         let View { rho, z, at, .. } = view;
         let sin = f32x4::splat(v.x * v.x + v.y * v.y).sqrt();
@@ -210,8 +205,7 @@ impl Bounded {
         Ok(())
     }
 
-    /// The limit of the random number for a view and a slope, each a node and the weight of the
-    /// next.
+    /// The limit for a view and a slope, each a node and the weight of the next.
     #[inline(always)]
     fn limit(&self, (row, w): (i32, f32), (cell, t): (i32, f32), end: usize) -> f32 {
         const STRIDE: usize = CELLS + 1;
@@ -220,7 +214,7 @@ impl Bounded {
         let Some(near) = self.limits.get(at..at + STRIDE + 2) else { return end as f32 };
         let along = |i: usize| near[i][end] + t * (near[i + 1][end] - near[i][end]);
         let (low, high) = (along(0), along(STRIDE));
-        // Not before: a node cut off at 0 or 1 would take its margin from the others.
+        // Clamped after interpolation: a node clamped at 0 or 1 would narrow the margin of others.
         (low + w * (high - low)).clamp(0.0, 1.0)
     }
 
@@ -367,7 +361,7 @@ impl BoundedView<'_> {
     pub fn sample(&self, u: [f32; 2]) -> Vec3 {
         let (lobe, v) = (self.lobe, self.v);
         let u = [within(self.from, self.share, u[0]), u[1]];
-        if !lobe.slices.fast.plain {
+        if lobe.slices.peeled {
             return lobe.sample_visible_normal(v, u);
         }
         let m = lobe.draw::<false>(&self.view, u, [lobe.sigma_x, lobe.sigma_y], |m| m);

@@ -14,8 +14,7 @@ pub(super) const LOBE: [&[Kind]; 3] = [
     &[Kind::VisibleSlopeConditional],
 ];
 
-/// Weights along the γ axis at s; `None` for a shape that the table was not baked and measured for,
-/// though its axis may reach there.
+/// Weights along the γ axis at s; `None` where the table does not cover it, as its axis may.
 pub(super) fn shape_weights(table: &Table, s: f64) -> Option<Weights> {
     if table.subject.lobe.contains_s(s) { table.axes[0].weights(s) } else { None }
 }

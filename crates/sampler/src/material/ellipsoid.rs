@@ -10,13 +10,13 @@ use wide::f32x4;
 
 use super::below_horizon::{ExcessShare, Numbers, SlopeBelowHorizon};
 use super::distribution::{Facet, MicrofacetDistribution, SMOOTH, is_hidden, visible_density};
+use super::horizon::{HORIZON, above_horizon};
 use super::key::LobeKey;
+use super::lanes::views::Views;
+use super::lanes::{first_three, sum};
 use super::matrix::{ENTRIES, Matrix};
-use super::sample::{HORIZON, above_horizon, first_three};
 use super::student_t::{Stretched, StudentT};
-use super::views::Views;
 use crate::error::MaterialError;
-use crate::lanes::sum;
 
 /// An Ellipsoid lobe: that of Walter et al. 2015 (supplemental material of
 /// <https://doi.org/10.1145/2815618>) at γ = 2, a skewed Student-t for other γ, a skewed Beckmann
@@ -164,8 +164,6 @@ impl Ellipsoid {
 }
 
 impl MicrofacetDistribution for Ellipsoid {
-    /// Normal distribution function D(m) per steradian, with ∫ D(m) (m·n) dm = 1; 0 for m at or
-    /// below the horizon.
     #[inline]
     fn d(&self, m: Vec3) -> f32 {
         if !(m.z > 0.0) {
@@ -187,26 +185,22 @@ impl MicrofacetDistribution for Ellipsoid {
         (v.z * self.inverse_area(w, &self.lobe.stretch(w))).min(1.0)
     }
 
-    /// A normal visible from `v`, from two numbers in [0, 1] (clamped to them, NaN to 0).
     #[inline(always)]
     fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
-        if !self.lobe.slices.fast.plain {
+        if self.lobe.slices.peeled {
             return self.sample_heavy(v.x, v.y, v.z, u);
         }
         let m = self.sample_fast::<false>(v, u);
         m.map_or_else(|| self.sample_general(v.x, v.y, v.z, u), first_three)
     }
 
-    /// Density of visible normals (v·m)⁺ D(m)/area per steradian; 0 where m faces away or lies
-    /// below the horizon.
     #[inline]
     fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
         let w = self.to_unit(v);
         visible_density(v.dot(m), self.d(m), self.inverse_area(w, &self.lobe.stretch(w)))
     }
 
-    /// The weight f·cos θ_l/pdf of a light reflected off a [sampled](Self::sample_visible_normal)
-    /// visible normal, without Fresnel: G2(v, l)·area/(v·n) ≤ 1.
+    /// G2(v, l)·area/(v·n) ≤ 1.
     #[inline]
     fn reflection_weight(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
         if !(v.z > 0.0) {

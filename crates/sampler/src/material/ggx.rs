@@ -7,9 +7,9 @@ use microfacet_core::math::{sqrt, unit};
 use microfacet_core::{Masking, Roughness, saturated};
 
 use super::distribution::{Facet, MicrofacetDistribution, SMOOTH, visible_density};
+use super::horizon::{above_horizon, face};
 use super::key::LobeKey;
 use super::roughness::checked;
-use super::sample::{above_horizon, face};
 use super::student_t::{LONG, LONGEST, SHORT};
 use crate::elementary::turn;
 use crate::error::MaterialError;

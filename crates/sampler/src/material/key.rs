@@ -37,8 +37,7 @@ impl LobeKey {
         matches!(self, Self::Upright(lobe) if lobe.is_family())
     }
 
-    /// Whether a table that names its own lobe is of this one; a tilt is compared in single
-    /// precision, in which lobes take it.
+    /// Whether a table that names its own lobe is of this one, with a tilt in single precision.
     pub(crate) fn is(&self, table: &LobeSpec) -> bool {
         match self {
             Self::Upright(lobe) => !lobe.is_family() && table.contains(lobe),

@@ -66,11 +66,6 @@ impl MicrofacetDistribution for Lobe {
     }
 
     #[inline]
-    fn lambda(&self, v: Vec3) -> f32 {
-        each!(self, lobe => lobe.lambda(v))
-    }
-
-    #[inline]
     fn g2(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
         each!(self, lobe => lobe.g2(v, l, masking))
     }

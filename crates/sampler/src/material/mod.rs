@@ -2,38 +2,34 @@
 //! directions are left.
 //!
 //! [`distribution`] is the trait of them all. [`student_t`] reads slices of the tables ([`slices`])
-//! for masking and visible normals, of the shapes that all of them cover ([`coverage`]): [`sample`]
-//! draws them, one at a time by [`fast_path`] and four at a time by [`batch`], with the part that
-//! no table holds from [`heavy`]. [`normals`] is D in closed form. [`inverse`] finds the random
-//! numbers of a slope: [`table_pdf`] is the density of what is drawn, and [`bounded`] leaves out
-//! normals that cannot reflect. [`ellipsoid`] takes directions through a [`matrix`] to a Student-t,
-//! and draws what lies [`below_horizon`] by rejection; [`radial`] has tables of its own, and
-//! [`ggx`] and the [`smooth`] surface need none. [`key`] is what albedo tables know a lobe by, and
-//! [`shape`] what exports write of one.
+//! for masking and visible normals, of the shapes that all of them cover ([`coverage`]); [`lanes`]
+//! are its lookups in SIMD, with the part that no table holds from [`heavy`], and [`horizon`] mends
+//! what rounding does to a normal. [`normals`] is D in closed form. [`table_pdf`] is the density of
+//! what is drawn, and [`bounded`] leaves out normals that cannot reflect. [`ellipsoid`] takes
+//! directions through a [`matrix`] to a Student-t, and draws what lies [`below_horizon`] by
+//! rejection; [`radial`] has tables of its own, and [`ggx`] and the [`smooth`] surface need none.
+//! [`key`] is what albedo tables know a lobe by, and [`shape`] what exports write of one.
 
-mod batch;
 mod below_horizon;
 mod bounded;
 pub(crate) mod coverage;
 mod distribution;
 mod ellipsoid;
-mod fast_path;
 mod ggx;
 mod heavy;
-mod inverse;
+mod horizon;
 mod key;
+mod lanes;
 mod lobe;
 mod matrix;
 mod normals;
 mod radial;
 mod roughness;
-mod sample;
 pub(crate) mod shape;
 pub(crate) mod slices;
 mod smooth;
 mod student_t;
 mod table_pdf;
-mod views;
 
 pub use bounded::{Bounded, BoundedView};
 pub use distribution::{Facet, MicrofacetDistribution};

@@ -129,8 +129,7 @@ impl Radial {
 }
 
 impl MicrofacetDistribution for Radial {
-    /// Normal distribution function D(m) per steradian, interpolated; 0 for m at or below the
-    /// horizon.
+    /// Interpolated.
     #[inline]
     fn d(&self, m: Vec3) -> f32 {
         if !(m.z > 0.0) {
@@ -146,13 +145,11 @@ impl MicrofacetDistribution for Radial {
         (root * root) * (root * root)
     }
 
-    /// Smith masking G1(v) ∈ [0, 1]; 0 at and below the horizon.
     #[inline]
     fn g1(&self, v: Vec3) -> f32 {
         self.plane.g1(v)
     }
 
-    /// A normal visible from `v`, from two numbers in [0, 1] (clamped to them, NaN to 0).
     #[inline]
     fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
         let view = self.plane.stretch(v);
@@ -160,7 +157,7 @@ impl MicrofacetDistribution for Radial {
         self.plane.assemble(&view, x, self.sample_across(x, u[1]))
     }
 
-    /// Density of visible normals (v·m)⁺ D(m) G1(v)/(v·n) per steradian, with the tables' D and G1.
+    /// With the tables' D and G1.
     #[inline]
     fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
         visible_density(v.dot(m), self.d(m), self.plane.inverse_area(&self.plane.stretch(v)))

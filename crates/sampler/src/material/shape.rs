@@ -1,4 +1,4 @@
-//! All that the lookups of one shape read, for whoever writes it in another language.
+//! All that the lookups of one shape read, for exports to other languages.
 
 use alloc::vec::Vec;
 
@@ -70,9 +70,9 @@ impl ShapeTables {
             masking: slices.shadowing.clone(),
             lines: slices.lines,
             numbers: slices.half_cells + 1,
-            scales: slices.fast.scales,
+            scales: slices.scales,
             slopes: slices.slope.clone(),
-            across: slices.fast.across.clone(),
+            across: slices.across_cells.clone(),
             heavy: slices.peeled.then(heavy),
         }
     }

@@ -85,25 +85,13 @@ pub(crate) struct Slices {
     pub(crate) half_cells: usize,
     /// Whether `slope` is peeled.
     pub(crate) peeled: bool,
-    /// Slopes across, the half for u > ½.
+    /// Slopes across, the half for u > ½: by node, and by cell.
     pub(crate) across: Vec<Node>,
-    /// What the fast path reads besides `slope`.
-    pub(crate) fast: FastPath,
-    /// Constants of the heavy part, where `slope` is peeled.
-    pub(crate) heavy: Heavy,
-}
-
-/// The layout of the fast path.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct FastPath {
-    /// Whether the lobe is of the common kind, without a peeled table.
-    pub(crate) plain: bool,
-    /// Slopes across by cell.
-    pub(crate) across: Vec<Cell>,
+    pub(crate) across_cells: Vec<Cell>,
     /// Factors from min(u, 1−u)^(1/4) to cells, for u₁ and u₂.
     pub(crate) scales: [f32; 2],
-    /// Nodes of half a row of `slope`.
-    pub(crate) half: u32,
+    /// Constants of the heavy part, where `slope` is peeled.
+    pub(crate) heavy: Heavy,
 }
 
 impl Slices {
@@ -116,17 +104,12 @@ impl Slices {
         slices.across = across.nodes;
         spread(&mut slices.across);
         make_monotone(&mut slices.across);
-        let (numbers, rows) = (slices.half_cells + 1, slices.rows);
-        slices.fast = FastPath {
-            plain: !slices.peeled,
-            scales: [slices.half_cells, slices.across.len() - 1].map(MirroredRoot::scale),
-            across: cubic_cells(&slices.across, 1.0),
-            half: numbers as u32,
-        };
+        slices.scales = [slices.half_cells, slices.across.len() - 1].map(MirroredRoot::scale);
+        slices.across_cells = cubic_cells(&slices.across, 1.0);
         if slices.peeled {
             let moment = f64::from(slices.first_moment());
             let share = |t: f64| slices.share_of_moment(moment, t);
-            slices.heavy = Heavy::new(gamma, s, rows, share);
+            slices.heavy = Heavy::new(gamma, s, slices.rows, share);
         }
         Ok(slices)
     }
@@ -161,9 +144,16 @@ impl Slices {
             half_cells: numbers.nodes.len() - 1,
             peeled: slope.kind == Kind::VisibleSlopePeeled,
             across: Vec::new(),
-            fast: FastPath::default(),
+            across_cells: Vec::new(),
+            scales: [0.0; 2],
             heavy: Heavy::default(),
         }
+    }
+
+    /// Nodes of half a row of `slope`.
+    #[inline(always)]
+    pub(crate) fn half(&self) -> u32 {
+        self.half_cells as u32 + 1
     }
 
     /// The coordinate of four views in rows, and 1 − τ. The same bits whatever `HEAVY` is, which
@@ -213,7 +203,7 @@ impl Slices {
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(&self.shadowing[..])
             + size_of_val(&self.slope[..])
-            + size_of_val(&self.fast.across[..])
+            + size_of_val(&self.across_cells[..])
     }
 }
 
@@ -237,8 +227,7 @@ fn find<'a>(
     Err(MaterialError::NotCovered { gamma, covered: coverage::in_words(tables) })
 }
 
-/// The tables that a lobe of one shape reads: of masking, of slopes in the plane of incidence, and
-/// of those across it.
+/// See [`port::tables_of_shape`](crate::port::tables_of_shape).
 pub(crate) fn tables_of_shape(tables: &[Table], gamma: f64) -> Result<[&Table; 3], MaterialError> {
     let find = |kinds| find(tables, kinds, gamma, s_of_gamma(gamma)).map(|(table, _)| table);
     let [shadowing, slope, across] = coverage::LOBE.map(find);

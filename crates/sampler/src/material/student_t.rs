@@ -1,24 +1,33 @@
 //! A Student-t lobe prepared from tables: σ and γ are fixed, only directions are left.
+//!
+//! The in-plane slope x and the slope across t of visible normals are independent (see the model
+//! crate), so one lookup inverts each CDF. A table holds the distance of the slope's half tangent
+//! from an end, see [`half_tangent`](microfacet_tables::axis::half_tangent); there the silhouette is
+//! linear in the view coordinate, so no sampled normal faces away, however coarse the table. Here
+//! each lookup stands as it reads; [`lanes`] has those that a renderer calls, in SIMD.
 
 use core::f32::consts::PI;
 
 use glam::Vec3;
-use microfacet_core::math::sqrt;
+use microfacet_core::math::{sqrt, unit};
 use microfacet_core::shape::s_of_gamma;
 use microfacet_core::{Masking, Roughness, saturated};
 use microfacet_tables::Table;
-use microfacet_tables::axis::hermite::{horner, split};
+use microfacet_tables::axis::MirroredRoot;
+use microfacet_tables::axis::half_tangent::Slope;
+use microfacet_tables::axis::hermite::{between_rows, hermite, horner, locate, split};
 use wide::f32x4;
 
+use super::bounded::Bounded;
 use super::distribution::{
     Facet, GRAZING, MicrofacetDistribution, SMOOTH, SMOOTH_MASKED, is_hidden, visible_density,
 };
+use super::horizon::above_horizon;
 use super::key::LobeKey;
 use super::normals::Normals;
 use super::roughness::checked;
 use super::slices::Slices;
 use crate::error::{BatchError, MaterialError, same_lengths};
-use crate::lanes::{swap_halves, swap_pairs};
 
 /// A Student-t lobe with fixed roughness and shape, holding only the slices of the tables it needs.
 ///
@@ -72,15 +81,6 @@ pub(crate) const LONG: f32 = 1e9;
 /// The squares of longer parts leave the range of f32.
 pub(crate) const LONGEST: f32 = 1e19;
 
-/// Less than the area of any direction; its reciprocal times the number of cells stays finite.
-pub(crate) const LEAST_AREA: f32 = 1e-30;
-
-/// Returns 0, the G1 of NaN; kept cold and out of line so that the common path stays short.
-#[cold]
-fn g1_of_nan<T: Default>() -> T {
-    T::default()
-}
-
 impl StudentT {
     /// The smallest and the largest σ of a lobe, [1e-8, 1e6]: outside, squares would leave single
     /// precision. A smoother surface is a mirror.
@@ -99,8 +99,7 @@ impl StudentT {
         Ok(Self::new(sigma, gamma, slices))
     }
 
-    /// The carrier of another distribution's tables: unit slopes are slopes over σ, and slopes
-    /// across scale with √(1 + x²).
+    /// The carrier of another distribution's tables, whose unit slopes are slopes over σ.
     pub(crate) fn for_radial(sigma: f32, slices: Slices) -> Self {
         Self::new([sigma; 2], 2.0, slices)
     }
@@ -139,6 +138,37 @@ impl StudentT {
         self.gamma
     }
 
+    /// Share of `u[0]`, from 0 up, that
+    /// [`sample_visible_normal`](crate::MicrofacetDistribution::sample_visible_normal) reads from
+    /// the table; the rest draws from the closed-form heavy part.
+    ///
+    /// 1 where the whole distribution is tabulated.
+    pub fn tabulated_share(&self, v: Vec3) -> f32 {
+        if !self.slices.peeled {
+            return 1.0;
+        }
+        // To the bit as the sampler has it: the next number belongs to the other part.
+        let at = self.view::<true>(v).at.to_array()[0];
+        unit(1.0 - self.slices.heavy.share(at))
+    }
+
+    /// Prepares the visible normals of every view for reflection.
+    ///
+    /// For γ < 1.8 (in the default set) only the end away from the viewer is restricted.
+    pub fn bounded(self) -> Bounded {
+        Bounded::new(self)
+    }
+
+    /// Whether a lobe of this shape with roughness σ is [smooth](Self::is_effectively_smooth).
+    pub(crate) fn is_smooth(&self, sigma: f32) -> bool {
+        let rho = sigma * sqrt(1.0 - GRAZING * GRAZING);
+        let grazing = Stretched { x: 1.0, y: 0.0, frame: 1.0, rho, z: GRAZING };
+        let masked = 1.0 - GRAZING * self.inverse_area(&grazing);
+        // The mean of |x| over unit slopes x: 1 for GGX, and without limit towards γ = 3/2.
+        let mean_slope = 2.0 * self.slices.first_moment();
+        sigma * mean_slope < SMOOTH && masked <= SMOOTH_MASKED
+    }
+
     #[inline(always)]
     pub(crate) fn stretch(&self, w: Vec3) -> Stretched {
         let (x, y) = (self.sigma_x * w.x, self.sigma_y * w.y);
@@ -159,41 +189,17 @@ impl StudentT {
     /// 1/(area of the microsurface seen along the stretched direction) = G1/z, finite at grazing.
     #[inline(always)]
     pub(crate) fn inverse_area(&self, w: &Stretched) -> f32 {
-        let r = self.inverse_mean_area(w.rho, w.z);
-        self.shadowing(w.rho, w.z, r) * r
-    }
-
-    /// The mean of |x| over unit slopes x: 1 for GGX, and without limit towards γ = 3/2.
-    fn mean_slope(&self) -> f32 {
-        2.0 * self.slices.first_moment()
-    }
-
-    /// Whether a lobe of this shape with roughness σ is a mirror, see
-    /// [`MicrofacetDistribution::is_effectively_smooth`].
-    pub(crate) fn is_smooth(&self, sigma: f32) -> bool {
-        let rho = sigma * sqrt(1.0 - GRAZING * GRAZING);
-        let grazing = Stretched { x: 1.0, y: 0.0, frame: 1.0, rho, z: GRAZING };
-        let masked = 1.0 - GRAZING * self.inverse_area(&grazing);
-        sigma * self.mean_slope() < SMOOTH && masked <= SMOOTH_MASKED
-    }
-
-    /// cells/(z + κρ): times z, it is the view coordinate q in cells.
-    #[inline(always)]
-    fn inverse_mean_area(&self, rho: f32, z: f32) -> f32 {
-        // The sum vanishes only for the null vector and straight below the surface, where z·r is
-        // then 0 and not 0·∞.
-        self.slices.shadowing_cells / (z + self.slices.kappa * rho).max(LEAST_AREA)
-    }
-
-    /// G1/q over the number of cells, from the table.
-    #[inline(always)]
-    fn shadowing(&self, rho: f32, z: f32, r: f32) -> f32 {
+        /// Less than any area; its reciprocal times the number of cells stays finite.
+        const LEAST_AREA: f32 = 1e-30;
         let slices = &self.slices;
-        let at = slices.shadowing_view.of_view(rho, z, slices.kappa, r, slices.shadowing_cells);
+        // cells/(z + κρ): times z, it is the view coordinate q in cells. The sum vanishes only for
+        // the null vector and straight below the surface, where z·r is then 0 and not 0·∞.
+        let r = slices.shadowing_cells / (w.z + slices.kappa * w.rho).max(LEAST_AREA);
+        let at = slices.shadowing_view.of_view(w.rho, w.z, slices.kappa, r, slices.shadowing_cells);
         let (cell, w) = split(f32x4::splat(at));
-        // Only NaN can leave the table.
+        // G1/q over the number of cells. Only NaN can leave the table.
         let cell = slices.shadowing.get(cell.to_array()[0] as u32 as usize);
-        cell.map_or(0.0, |cell| horner(cell, w.to_array()[0]))
+        cell.map_or(0.0, |cell| horner(cell, w.to_array()[0])) * r
     }
 
     /// D of a normal above the horizon, from it with its horizontal part divided by σ and from the
@@ -211,34 +217,58 @@ impl StudentT {
         self.d_of_unit(Vec3::new(m.x * x, m.y * y, m.z), length2, self.scale)
     }
 
-    /// G1 of a view and a light: the root, the division and the lookup's arithmetic of
-    /// [`g1`](MicrofacetDistribution::g1) in two lanes.
+    /// The in-plane slope from the table at u ∈ [0, 1].
     #[inline(always)]
-    fn g1_of_both(&self, v: Vec3, l: Vec3) -> [f32; 2] {
+    pub(crate) fn sample_slope(&self, view: &Stretched, u: f32) -> Slope {
         let slices = &self.slices;
-        // In turns [v, l, v, l], so that no lane has to be set to zero.
-        let [kx, ky] = self.kappa_sigma;
-        let xy = f32x4::new([v.x, l.x, v.y, l.y]) * f32x4::new([kx, kx, ky, ky]);
-        let squares = xy * xy;
-        let z = f32x4::new([v.z, l.z, v.z, l.z]).fast_max(f32x4::ZERO);
-        let across = (squares + swap_halves(squares)).sqrt();
-        let [q, at] = slices.shadowing_view.of_views(across, z, slices.shadowing_cells);
-        let (cell, w) = split(at);
-        let [i, j, ..] = cell.to_array().map(|cell| cell as u32 as usize);
-        let (Some(a), Some(b)) = (slices.shadowing.get(i), slices.shadowing.get(j)) else {
-            return g1_of_nan();
-        };
-        // c₀ and c₁ of both, then c₂ and c₃.
-        let (a, b) = (f32x4::new(*a), f32x4::new(*b));
-        let (low, high) = (a.unpack_lo(b), a.unpack_hi(b));
-        let ([wa, wb, ..], square) = (w.to_array(), w * w);
-        let terms = (low + square * high) * f32x4::new([1.0, 1.0, wa, wb]);
-        let [g1_v, g1_l, ..] = (q * (terms + swap_halves(terms))).fast_min(f32x4::ONE).to_array();
-        // As in `g1`.
-        if cfg!(not(target_feature = "sse2")) && (g1_v.is_nan() || g1_l.is_nan()) {
-            return g1_of_nan();
-        }
-        [g1_v, g1_l]
+        let (row, between) = self.locate_row(view);
+        let towards = u > 0.5;
+        let t = MirroredRoot::coordinate(u);
+        let (cell, w) = locate(t * slices.half_cells as f32, slices.half_cells);
+        // A row holds both halves, cells + 1 nodes each.
+        let stride = 2 * (slices.half_cells + 1);
+        let start = row * stride + if towards { slices.half_cells + 1 } else { 0 } + cell;
+        let nodes = &slices.slope[..];
+        let (a, b) = between_rows(
+            &nodes[start..start + 2],
+            &nodes[start + stride..start + stride + 2],
+            0,
+            between,
+        );
+        Slope::from_end(hermite(a, b, w), if towards { 1.0 } else { -1.0 })
+    }
+
+    /// The row of the slope table at a view: a cell of the view axis, and the position inside it.
+    #[inline(always)]
+    pub(super) fn locate_row(&self, view: &Stretched) -> (usize, f32) {
+        let slices = &self.slices;
+        locate(slices.row(view.rho, view.z), slices.rows)
+    }
+
+    /// The slope across in units of √(1 + s x²).
+    #[inline(always)]
+    pub(crate) fn sample_across(&self, u: f32) -> Slope {
+        let slices = &self.slices;
+        let cells = slices.across.len() - 1;
+        let t = MirroredRoot::coordinate(u);
+        let (cell, w) = locate(t * cells as f32, cells);
+        let pair = &slices.across[cell..cell + 2];
+        Slope::from_end(hermite(pair[0], pair[1], w), if u > 0.5 { 1.0 } else { -1.0 })
+    }
+
+    /// The normal in the tangent frame of two slopes in unit space.
+    #[inline(always)]
+    pub(crate) fn assemble(&self, view: &Stretched, x: Slope, t: Slope) -> Vec3 {
+        let m = self.unit_normal(view, x, t);
+        above_horizon(Vec3::new(self.sigma_x * m.x, self.sigma_y * m.y, m.z))
+    }
+
+    /// The unnormalised normal in unit space: y = √(1 + s x²)·t, turned to the view's azimuth.
+    #[inline(always)]
+    pub(crate) fn unit_normal(&self, view: &Stretched, x: Slope, t: Slope) -> Vec3 {
+        let y = sqrt(x.z * x.z + self.s * x.x * x.x) * t.x;
+        let (x, z) = (x.x * t.z, x.z * t.z);
+        Vec3::new(x * view.x - y * view.y, x * view.y + y * view.x, z * view.frame)
     }
 }
 
@@ -256,32 +286,7 @@ impl MicrofacetDistribution for StudentT {
 
     #[inline(always)]
     fn g1(&self, v: Vec3) -> f32 {
-        // As `inverse_area`, without the azimuth that `stretch` finds, with κ folded into the
-        // roughness, and with nothing between the division and the lookup. The chain of a root, a
-        // division and a lookup is so long that the instructions of a few calls fill the
-        // processor's window, and each one less counts. Of 4.3 ns, Horner's scheme, which no
-        // compiler turns into shuffles, saved about 0.5, an area without a lower limit 0.2, and a
-        // root of all lanes, none of which is set to zero, with NaN handled out of line, 0.3; 3.1
-        // are left.
-        let slices = &self.slices;
-        let [kx, ky] = self.kappa_sigma;
-        let xy = f32x4::new([v.x, v.y, 0.0, 0.0]) * f32x4::new([kx, ky, 0.0, 0.0]);
-        let squares = xy * xy;
-        let z = f32x4::new([v.z, 0.0, 0.0, 0.0]).fast_max(f32x4::ZERO);
-        let across = (squares + swap_pairs(squares)).sqrt();
-        let [q, at] = slices.shadowing_view.of_views(across, z, slices.shadowing_cells);
-        let (cell, w) = split(at);
-        let Some(cell) = slices.shadowing.get(cell.to_array()[0] as u32 as usize) else {
-            return g1_of_nan();
-        };
-        let g1 = q.to_array()[0] * horner(cell, w.to_array()[0]);
-        // The null vector gives 0/0, which leaves the table where the cast does not saturate, and
-        // is cell 0 where it does.
-        if cfg!(not(target_feature = "sse2")) && g1.is_nan() {
-            return 0.0;
-        }
-        // Interpolation may overshoot 1 by the table's error near normal incidence.
-        g1.min(1.0)
+        self.g1_of_one(v)
     }
 
     /// A normal visible from `v`, by the inverse CDFs of two slopes at `u[0]` and `u[1]`.

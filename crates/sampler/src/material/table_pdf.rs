@@ -3,14 +3,20 @@
 //! An estimator that divides by it is unbiased at any resolution: it is the Jacobian of the
 //! sampler's own map, found by inverting the interpolated CDFs, and not the analytic density that
 //! they approximate. It is computed in f64 from the same nodes that the sampler reads.
+//!
+//! The inverse of a lookup is the random number at which the table has a slope. A row of nodes
+//! ascends. All of them are compared with a value at once, which takes less time than a search that
+//! branches on what a processor cannot predict.
 
 use alloc::vec::Vec;
 
 use glam::Vec3;
-use wide::f32x4;
+use wide::{bytemuck, f32x4, i32x4};
 
 use microfacet_core::math::{sqrt64, unit};
-use microfacet_tables::axis::half_tangent::{ends_and_rate, slope_at};
+use microfacet_tables::axis::MirroredRoot;
+use microfacet_tables::axis::half_tangent::{ends, ends_and_rate, slope_at};
+use microfacet_tables::axis::hermite::{Cubic, Node, split};
 
 use super::distribution::MicrofacetDistribution;
 use super::student_t::{Stretched, StudentT};
@@ -23,11 +29,101 @@ struct UnitSlopes {
     y: f64,
 }
 
+/// Two neighbouring rows of a table and the position between them.
+pub(super) struct Rows<'a> {
+    low: &'a [Node],
+    high: &'a [Node],
+    between: f32,
+}
+
+impl<'a> Rows<'a> {
+    /// One row.
+    fn one(row: &'a [Node]) -> Self {
+        Self { low: row, high: row, between: 0.0 }
+    }
+
+    #[inline(always)]
+    fn node(&self, i: usize) -> Node {
+        let (a, b) = (self.low[i], self.high[i]);
+        [a[0] + self.between * (b[0] - a[0]), a[1] + self.between * (b[1] - a[1])]
+    }
+
+    /// How many of the nodes from `first` up to `end` are not above g.
+    #[inline(always)]
+    fn count(&self, first: usize, end: usize, g: f32) -> usize {
+        let ((low, low_rest), (high, _)) =
+            (self.low[first..end].as_chunks::<2>(), self.high[first..end].as_chunks::<2>());
+        let mut count = i32x4::ZERO;
+        for (low, high) in low.iter().zip(high) {
+            let [low, high] = [low, high].map(|[a, b]| f32x4::new([a[0], a[1], b[0], b[1]]));
+            let nodes = low + f32x4::splat(self.between) * (high - low);
+            count -= bytemuck::cast::<f32x4, i32x4>(nodes.simd_le(g));
+        }
+        // Slopes of nodes stand in the other lanes.
+        let [even, _, odd, _] = count.to_array();
+        let last = !low_rest.is_empty() && self.node(end - 1)[0] <= g;
+        (even + odd) as usize + usize::from(last)
+    }
+}
+
+/// Where the interpolated inverse CDF of one half of a mirrored axis takes a value.
+struct Cell {
+    cell: usize,
+    /// Reciprocal of the number of cells.
+    width: f64,
+    g: f64,
+    nodes: [Node; 2],
+}
+
+/// The t of 2⁻⁴⁹, far less than any random number but 0 that generators of 32 bits draw. Nearer to
+/// an end is what was drawn at 0, which stands for all numbers around it, though the density of the
+/// map may vanish there.
+const LEAST_T: f64 = 1.0 / 4096.0;
+
+/// Coordinate in [0, 1] of a place, and the derivative of the value there.
+struct Place {
+    t: f64,
+    dg_dt: f64,
+    /// Whether it stands for places nearer to the end.
+    is_end: bool,
+}
+
+impl Cell {
+    /// Among the `cells + 1` ascending nodes from `first` on.
+    #[inline(always)]
+    fn find(rows: &Rows<'_>, first: usize, cells: usize, g: f64) -> Self {
+        let cell = rows.count(first, first + cells, g as f32).max(1) - 1;
+        let nodes = [rows.node(first + cell), rows.node(first + cell + 1)];
+        // A sampled g may have been rounded across a node, into the cell beside its own; the halves
+        // meet at u = ½ up to the rounding of their nodes; and at the first node lies the
+        // silhouette, which rounding crosses. Outside its cell, g is a rounded sample of the
+        // nearer end.
+        let g = g.max(f64::from(nodes[0][0])).min(f64::from(nodes[1][0]));
+        Self { cell, width: 1.0 / cells as f64, g, nodes }
+    }
+
+    /// The place of the value, to 1e-11.
+    #[inline(always)]
+    fn place(&self) -> Place {
+        let cubic = Cubic::new(self.nodes[0], self.nodes[1]);
+        let t = (self.cell as f64 + cubic.solve(self.g)) * self.width;
+        let is_end = !(t > LEAST_T);
+        let t = if is_end { LEAST_T } else { t };
+        let w = (t / self.width - self.cell as f64).min(1.0);
+        Place { t, dg_dt: cubic.derivative(w) / self.width, is_end }
+    }
+}
+
+impl Place {
+    /// du/dg; ∞ where many random numbers have one slope.
+    fn density(&self) -> f64 {
+        MirroredRoot::rate(self.t) / self.dg_dt.max(0.0)
+    }
+}
+
 impl StudentT {
-    /// Costs two searches and a few square roots; see
-    /// [`MicrofacetDistribution::table_pdf`](crate::MicrofacetDistribution::table_pdf). For a normal
-    /// that is not [hidden](super::distribution::is_hidden): this does not ask, since rounding may
-    /// put the slope of a drawn one behind the silhouette.
+    /// [`table_pdf`](MicrofacetDistribution::table_pdf) of a normal that faces the view: it does
+    /// not ask, since rounding may put the slope of a drawn one behind the silhouette.
     pub(crate) fn density_of_samples(&self, v: Vec3, m: Vec3) -> f32 {
         if !(m.z > 0.0) {
             return 0.0;
@@ -105,5 +201,80 @@ impl StudentT {
         let log = log2(f32x4::splat(sqrt64(base) as f32));
         let power = exp2(log * (-two_gamma_minus_3 as f32)).to_array()[0];
         two_gamma_minus_3 * s * x / base * f64::from(power)
+    }
+
+    /// The coordinate of a view in rows, to rounding as the sampler has it.
+    #[inline(always)]
+    fn coordinate(&self, view: &Stretched) -> f32 {
+        self.slices.row(view.rho, view.z)
+    }
+
+    /// The rows at a view's coordinate, interpolated as the sampler does; `None` where it is NaN.
+    #[inline(always)]
+    pub(super) fn rows_at(&self, coordinate: f32) -> Option<Rows<'_>> {
+        let slices = &self.slices;
+        let (row, between) = split(f32x4::splat(coordinate));
+        let (row, between) = (row.to_array()[0] as u32 as usize, between.to_array()[0]);
+        let stride = 2 * (slices.half_cells + 1);
+        let (low, high) = slices.slope.get(row * stride..)?.get(..2 * stride)?.split_at(stride);
+        Some(Rows { low, high, between })
+    }
+
+    /// The half of the row that holds the in-plane slope of ends 1 ± h, and the cell in it.
+    #[inline(always)]
+    fn cell_along(&self, rows: &Rows<'_>, ends: [f64; 2]) -> (usize, Cell) {
+        let cells = self.slices.half_cells;
+        let low = ends[0];
+        // The half for u ≤ ½ ends where 1 + h reaches its last node; larger slopes are looked up by
+        // 1 − h in the other half.
+        // An index, since a branch would be mispredicted as often as not.
+        let half = usize::from(low > f64::from(rows.node(cells)[0]));
+        let g = ends[half];
+        (half, Cell::find(rows, half * (cells + 1), cells, g))
+    }
+
+    /// The cell of the slopes across that holds the distance g from their end.
+    #[inline(always)]
+    fn cell_across(&self, g: f64) -> Cell {
+        let nodes = &self.slices.across;
+        Cell::find(&Rows::one(nodes), 0, nodes.len() - 1, g)
+    }
+
+    /// The random number at which a row of the table has the in-plane slope x : z.
+    pub(super) fn number_along(&self, rows: &Rows<'_>, x: f64, z: f64) -> f64 {
+        let (half, cell) = self.cell_along(rows, ends(x, z));
+        let u = MirroredRoot::number(cell.place().t);
+        // The other half ascends from u = 1.
+        if half == 0 { u } else { 1.0 - u }
+    }
+
+    /// A row of the table.
+    pub(super) fn row(&self, row: usize) -> Rows<'_> {
+        let stride = 2 * (self.slices.half_cells + 1);
+        Rows::one(&self.slices.slope[row * stride..(row + 1) * stride])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Tables;
+    use glam::Vec3;
+
+    #[test]
+    fn numbers_are_those_of_the_lookup() {
+        let tables = Tables::embedded();
+        for gamma in [1.501, 1.7, 1.8, 2.0, 3.0, f64::INFINITY] {
+            let lobe = tables.student_t(1.0, gamma).unwrap();
+            for z in [0.0, 1e-3, 0.1, 0.4, 0.7, 0.95, 0.9999] {
+                let view = lobe.stretch(Vec3::new(libm::sqrtf(1.0 - z * z), 0.0, z));
+                let rows = lobe.rows_at(lobe.coordinate(&view)).unwrap();
+                for i in 1..400 {
+                    let u = i as f32 / 400.0;
+                    let slope = lobe.sample_slope(&view, u);
+                    let got = lobe.number_along(&rows, f64::from(slope.x), f64::from(slope.z));
+                    assert!((got - f64::from(u)).abs() < 1e-5, "{gamma} {z} {u}: {got}");
+                }
+            }
+        }
     }
 }

@@ -1,6 +1,24 @@
-//! Moves numbers between the lanes of a SIMD vector.
+//! The lookups of a [`StudentT`](super::StudentT) in the lanes of SIMD vectors: [`masking`], a
+//! normal of [`one`] view in lanes of its parts, and of [`four`] views, a lane for each. [`views`]
+//! stretches and locates them.
+//!
+//! Each does what the readable form in [`student_t`](super::student_t) says; tests of values and
+//! distributions hold for these.
 
+pub(crate) mod four;
+mod masking;
+mod one;
+pub(crate) mod views;
+
+use glam::Vec3;
 use wide::f32x4;
+
+/// The vector of the first three lanes.
+#[inline(always)]
+pub(crate) fn first_three(m: f32x4) -> Vec3 {
+    let [x, y, z, _] = m.to_array();
+    Vec3::new(x, y, z)
+}
 
 /// The sum of all lanes, in all lanes.
 #[inline(always)]

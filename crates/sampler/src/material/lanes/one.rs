@@ -1,4 +1,4 @@
-//! Visible normals as [`sample`](super::sample) draws them, faster, for common lobes and views. An
+//! A visible normal of one view, fast for common lobes and views. An
 //! [`Ellipsoid`](crate::Ellipsoid) takes the same path from its own view to its own normal.
 //!
 //! A row of the table of in-plane slopes belongs to a view, by its coordinate τ = z/(ρ + √(ρ²+z²));
@@ -24,13 +24,41 @@ use microfacet_tables::axis::half_tangent::half_slope_at;
 use microfacet_tables::axis::hermite::{Node, basis, cubic, split};
 use microfacet_tables::axis::roots;
 
-use super::heavy::Part;
-use super::sample::HORIZON;
-use super::student_t::StudentT;
 use super::views::View;
-use crate::lanes::{pairs, pairs_of_firsts, sum, swap_pairs};
+use super::{first_three, pairs, pairs_of_firsts, sum, swap_pairs};
+use crate::material::heavy::Part;
+use crate::material::horizon::HORIZON;
+use crate::material::student_t::StudentT;
 
 impl StudentT {
+    /// A visible normal, by the fast path where it serves and by the general path elsewhere.
+    #[inline(always)]
+    pub(crate) fn sample(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+        // Scalar arguments keep the common case in registers next to the calls of the others.
+        if self.slices.peeled {
+            return self.sample_heavy(v.x, v.y, v.z, u);
+        }
+        let m = self.sample_fast::<false>(v, u);
+        m.map_or_else(|| self.sample_general(v.x, v.y, v.z, u), first_three)
+    }
+
+    /// The same, of any length where that is faster; squares of it are in range.
+    #[inline(always)]
+    pub(crate) fn sample_along(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+        if self.slices.peeled {
+            return self.sample_heavy(v.x, v.y, v.z, u);
+        }
+        let m = self.draw_along::<false>(&self.view::<false>(v), u, [self.sigma_x, self.sigma_y]);
+        m.map_or_else(|| self.sample_general(v.x, v.y, v.z, u), |(m, _)| first_three(m))
+    }
+
+    /// The same for a lobe with a heavy part, out of line so that calls of the others stay short.
+    #[inline(never)]
+    fn sample_heavy(&self, x: f32, y: f32, z: f32, u: [f32; 2]) -> Vec3 {
+        let m = self.sample_fast::<true>(Vec3::new(x, y, z), u);
+        m.map_or_else(|| self.sample_general(x, y, z, u), first_three)
+    }
+
     /// `None` where the case is not [common](Self::draw).
     #[inline(always)]
     pub(crate) fn sample_fast<const HEAVY: bool>(&self, v: Vec3, u: [f32; 2]) -> Option<f32x4> {
@@ -66,7 +94,7 @@ impl StudentT {
         u: [f32; 2],
         [sx, sy]: [f32; 2],
     ) -> Option<(f32x4, f32x4)> {
-        let (slices, fast) = (&self.slices, &self.slices.fast);
+        let slices = &self.slices;
         let &View { xy, frame, at, silhouette, .. } = view;
         let (row, between) = split(at);
         let (row, between) = (row.to_array()[0] as u32, f32x4::splat(between.to_array()[0]));
@@ -80,27 +108,27 @@ impl StudentT {
             }
         }
         let u = f32x4::new([along, u[1], 0.0, 0.0]);
-        let t = roots(u) * f32x4::new([fast.scales[0], fast.scales[1], 0.0, 0.0]);
+        let t = roots(u) * f32x4::new([slices.scales[0], slices.scales[1], 0.0, 0.0]);
         let (cell, w) = split(t);
         let w = w.to_array();
         let towards = u.simd_gt(0.5);
         let sign = towards & f32x4::splat(-0.0);
         let half: i32x4 = bytemuck::cast(towards);
-        let cell = (cell + (half & i32x4::new([fast.half as i32, 0, 0, 0]))).to_array();
+        let cell = (cell + (half & i32x4::new([slices.half() as i32, 0, 0, 0]))).to_array();
 
         // The guard cell makes every random number's cell valid, and the guard row every view's.
         // NaN fails here or, where it converts to 0, in the test of g.
-        let stride = 2 * fast.half;
+        let stride = 2 * slices.half();
         let low = start(row, stride, cell[0]);
         let (high, across) = (low + stride as usize, cell[1] as u32 as usize);
         let nodes = &slices.slope[..];
-        if !(high + 2 <= nodes.len() && across < fast.across.len()) {
+        if !(high + 2 <= nodes.len() && across < slices.across_cells.len()) {
             return None;
         }
 
         // The slope across, as the quotient 2 t : t_z; then the factors of the in-plane slope and
         // of its norm.
-        let g_across = f32x4::splat(cubic(&fast.across[across], w[1]));
+        let g_across = f32x4::splat(cubic(&slices.across_cells[across], w[1]));
         let [t, t_z] = half_slope_at(g_across);
         let view = pairs(xy, frame);
         let ahead = view * f32x4::new([2.0 * sx, 2.0 * sy, 1.0, 0.0]) * t_z;
@@ -147,8 +175,7 @@ pub(crate) fn least_clear(silhouette: f32x4, t: f32x4, t_z: f32x4) -> f32x4 {
     (silhouette + SILHOUETTE_MARGIN) * t_z - t * SILHOUETTE_MARGIN_ACROSS
 }
 
-/// The index of a cell in a row, less than 2³¹ so that sums with it fit; arbitrary where either was
-/// NaN.
+/// The index of a cell in a row, below 2³¹ so that sums with it fit; arbitrary where one was NaN.
 #[inline(always)]
 pub(crate) fn start(row: u32, stride: u32, cell: i32) -> usize {
     (row.wrapping_mul(stride).wrapping_add(cell as u32) & (u32::MAX >> 1)) as usize

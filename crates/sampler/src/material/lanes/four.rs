@@ -1,7 +1,7 @@
 //! The functions over slices, four directions at a time, and the one path that serves every lobe,
 //! view and number.
 //!
-//! Every lane does what the [fast path](super::fast_path) for one direction does, in the same
+//! Every lane does what the [fast path](super::one) for one direction does, in the same
 //! order, so the results are the same, to the last bits of the normalisation. A batch saves by
 //! sharing: one root, division or polynomial serves four normals (18 ns become 8), and several
 //! groups of four go through each stage together, so that the processor has independent work during
@@ -13,46 +13,34 @@ use glam::Vec3;
 use wide::{bytemuck, f32x4, i32x4};
 
 use microfacet_tables::axis::half_tangent::half_slope_at;
-use microfacet_tables::axis::hermite::{Cell, cubic_lanes, hermite_lanes, horner_lanes, split};
+use microfacet_tables::axis::hermite::{Cell, cubic_lanes, hermite_lanes, split};
 use microfacet_tables::axis::roots;
 
-use super::distribution::MicrofacetDistribution;
-use super::fast_path::{least_clear, pair, start};
-use super::heavy::parts;
-use super::sample::HORIZON;
-use super::student_t::StudentT;
+use super::one::{least_clear, pair, start};
 use super::views::Views;
+use crate::material::heavy::parts;
+use crate::material::horizon::HORIZON;
+use crate::material::student_t::StudentT;
 
 /// Directions of a group.
 pub(crate) const LANES: usize = 4;
 /// How many groups of four go through each stage together.
 const GROUPS: usize = 8;
+
 impl StudentT {
     /// As many normals as there are views; the slices are of the same length.
     pub(crate) fn sample_all(&self, v: &[Vec3], u: &[[f32; 2]], m: &mut [Vec3]) {
         let ((v, v_rest), (u, u_rest)) = (v.as_chunks(), u.as_chunks());
         let (m, m_rest) = m.as_chunks_mut();
         for ((v, u), m) in v.chunks(GROUPS).zip(u.chunks(GROUPS)).zip(m.chunks_mut(GROUPS)) {
-            if self.slices.fast.plain {
-                self.sample_groups::<false>(v, u, m);
-            } else {
+            if self.slices.peeled {
                 self.sample_groups::<true>(v, u, m);
+            } else {
+                self.sample_groups::<false>(v, u, m);
             }
         }
         for ((v, u), m) in v_rest.iter().zip(u_rest).zip(m_rest) {
             *m = self.sample(*v, *u);
-        }
-    }
-
-    /// G1 of each view; the slices are of the same length.
-    pub(crate) fn g1_all(&self, v: &[Vec3], g1: &mut [f32]) {
-        let (v, v_rest) = v.as_chunks::<LANES>();
-        let (g1, g1_rest) = g1.as_chunks_mut::<LANES>();
-        for (v, g1) in v.iter().zip(g1) {
-            *g1 = self.g1_lanes(v);
-        }
-        for (v, g1) in v_rest.iter().zip(g1_rest) {
-            *g1 = self.g1(*v);
         }
     }
 
@@ -105,7 +93,7 @@ impl StudentT {
 
     #[inline(always)]
     fn locate<const HEAVY: bool>(&self, views: Views, u: [f32x4; 2]) -> Located {
-        let (slices, fast) = (&self.slices, &self.slices.fast);
+        let slices = &self.slices;
         let Views { rho, z, length, .. } = views;
         let [at, silhouette] = slices.place::<HEAVY>(rho, z, length);
         let (row, between) = split(at);
@@ -114,18 +102,18 @@ impl StudentT {
         } else {
             [u[0], f32x4::ZERO]
         };
-        let along = Number::new(number, fast.scales[0]);
-        let across = Number::new(u[1], fast.scales[1]);
+        let along = Number::new(number, slices.scales[0]);
+        let across = Number::new(u[1], slices.scales[1]);
         Located { views, silhouette, row, between, number, heavy, along, across }
     }
 
     /// The in-plane slopes and the slopes across.
     #[inline(always)]
     fn look_up<const HEAVY: bool>(&self, at: &Located) -> Slopes {
-        let (slices, fast) = (&self.slices, &self.slices.fast);
-        let stride = 2 * fast.half;
+        let slices = &self.slices;
+        let stride = 2 * slices.half();
         let half: i32x4 = bytemuck::cast(at.along.towards);
-        let cell = at.along.cell + (half & i32x4::splat(fast.half as i32));
+        let cell = at.along.cell + (half & i32x4::splat(slices.half() as i32));
         let (row, cell, between) = (at.row.to_array(), cell.to_array(), at.between.to_array());
         let nodes = &slices.slope[..];
         let node = |i: usize| {
@@ -138,7 +126,7 @@ impl StudentT {
             low + f32x4::splat(between[i]) * (high - low)
         };
         let g = hermite_lanes(f32x4::transpose(core::array::from_fn(node)), at.along.w);
-        let cells = coefficients(&fast.across, at.across.cell.to_array());
+        let cells = coefficients(&slices.across_cells, at.across.cell.to_array());
         let [t, t_z] = half_slope_at(cubic_lanes(cells, at.across.w));
         let [x, mut z] = half_slope_at(g);
         let mut x = x ^ at.along.sign();
@@ -168,21 +156,6 @@ impl StudentT {
             x * (views.y * sy * t_z) + norm * (views.x * sy * t),
             z * (views.frame * t_z),
         ]
-    }
-
-    #[inline(always)]
-    fn g1_lanes(&self, w: &[Vec3; LANES]) -> [f32; LANES] {
-        let slices = &self.slices;
-        let [wx, wy, wz] = transpose(w);
-        let [kx, ky] = self.kappa_sigma;
-        let (x, y) = (wx * kx, wy * ky);
-        let z = wz.fast_max(f32x4::ZERO);
-        let across = (x * x + y * y).sqrt();
-        let [q, at] = slices.shadowing_view.of_views(across, z, slices.shadowing_cells);
-        let (cell, w) = split(at);
-        let g1 = q * horner_lanes(coefficients(&slices.shadowing, cell.to_array()), w);
-        // NaN gives 0 here, too.
-        (g1.fast_min(f32x4::ONE) & g1.simd_ge(0.0)).to_array()
     }
 }
 
@@ -238,11 +211,7 @@ impl Number {
     }
 }
 
-/// Unit normals that face their views: those that rounding has put behind the
-/// silhouette are turned back onto it.
-///
-/// The silhouette's slope has the rounding of the view coordinate, which is coarse where σ is far
-/// below the view's tilt, and strong anisotropy lets the tilt across spoil the tilt along.
+/// As [`face`](crate::material::horizon::face) for one.
 #[inline(always)]
 fn facing(m: [f32x4; 3], [vx, vy, vz]: [f32x4; 3]) -> [f32x4; 3] {
     let vz = vz & vz.simd_gt(0.0);
@@ -261,8 +230,7 @@ fn facing(m: [f32x4; 3], [vx, vy, vz]: [f32x4; 3]) -> [f32x4; 3] {
     core::array::from_fn(|i| hidden.select(turned[i], m[i]))
 }
 
-/// Normalises normals, then takes their z times `shrink`, and raises them to the smallest cosine
-/// where they are lower.
+/// Normalised, then with z times `shrink`, and raised to the smallest cosine where they are lower.
 #[inline(always)]
 fn above_horizon([x, y, z]: [f32x4; 3], shrink: f32x4) -> [f32x4; 3] {
     // Two divisions fewer, at the cost of a last bit.

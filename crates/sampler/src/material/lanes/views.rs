@@ -1,14 +1,13 @@
 //! Views in the lanes of SIMD vectors, stretched and located in the table: one for the
-//! [fast path](super::fast_path), four for [batches](super::batch).
+//! [fast path](super::one), four for [batches](super::four).
 
 use glam::Vec3;
 use wide::f32x4;
 
-use super::student_t::{LONG, LONGEST, NORMAL_INCIDENCE, SHORT, StudentT};
-use crate::lanes::swap_pairs;
+use super::swap_pairs;
+use crate::material::student_t::{LONG, LONGEST, NORMAL_INCIDENCE, SHORT, StudentT};
 
-/// 2⁴⁰: a short horizontal part times this, or a long one over it, has squares well within the
-/// range of f32.
+/// 2⁴⁰: a short horizontal part times this, or a long one over it, has squares in range.
 const LIFT: f32 = 1_099_511_627_776.0;
 
 /// A stretched view in lanes: x and y in the first two of `xy`, the others in all lanes.
@@ -24,8 +23,7 @@ pub(crate) struct View {
     pub(crate) silhouette: f32x4,
 }
 
-/// The horizontal part of a view where that is short or too long, its frame, ρ, z and √(ρ² + z²),
-/// see [`Views`].
+/// The parts of [`Views`], of one view whose horizontal part is short or too long.
 #[cold]
 #[inline(never)]
 fn upright(x: f32, y: f32, z: f32) -> [f32; 6] {
@@ -62,7 +60,7 @@ impl StudentT {
     }
 }
 
-/// Four views as [`Stretched`](super::student_t::Stretched) is one, and √(ρ² + z²).
+/// Four views as [`Stretched`](crate::material::student_t::Stretched) is one, and √(ρ² + z²).
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Views {
     pub(crate) x: f32x4,
