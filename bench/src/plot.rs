@@ -16,7 +16,7 @@ pub(crate) fn svg(rows: &[Row]) -> String {
         panel("Visible normals", "error of the CDFs, max", &of(Quantity::Normal)),
         panel("G1", "error of G1, max", &of(Quantity::G1)),
     ];
-    Figure { panels, columns: 1, panel: [760.0, 470.0] }.svg()
+    Figure { panels, columns: 1, panel: [760.0, 470.0] }.drawing().svg()
 }
 
 /// Where a row is drawn: time and error. `None` for a sampler that draws anything but all visible
@@ -41,18 +41,14 @@ fn front(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
 fn panel(title: &str, y_label: &str, rows: &[&Row]) -> Panel {
     let marks: Vec<Mark> = rows.iter().filter_map(|row| Some(mark(row, place(row)?))).collect();
     let own = marks.iter().filter(|mark| mark.filled).map(|mark| mark.at).collect();
-    let steps =
-        front(own).windows(2).flat_map(|pair| [pair[0], (pair[1].0, pair[0].1), pair[1]]).collect();
-    let curves = vec![Curve {
-        key: Key::Method(Method::Other),
-        name: format!("nothing is faster and more accurate, γ = {GAMMA}"),
-        dash: Dash::Dashed,
-        points: steps,
-    }];
+    let front = front(own);
+    let steps = front.windows(2).flat_map(|pair| [pair[0], (pair[1].0, pair[0].1), pair[1]]);
+    let name = format!("nothing is faster and more accurate, γ = {GAMMA}");
+    let front = Curve::new(Key::Method(Method::Other), name, steps).dashed(Dash::Dashed);
     // Room for names to the right.
     let x = axis("ns a call", marks.iter().map(|mark| mark.at.0), [1.5, 4.0]);
     let y = axis(y_label, marks.iter().map(|mark| mark.at.1), [2.0, 2.0]);
-    Panel { title: title.into(), x, y, curves, marks }
+    Panel { marks, ..Panel::new(title, x, y, [front]) }
 }
 
 fn mark(row: &Row, at: (f64, f64)) -> Mark {

@@ -30,11 +30,11 @@ pub(super) fn run(args: Args) -> Outcome {
     let out = args.out.filter(|path| path.as_os_str() != "-");
     // A name that cannot be written is refused before anything is computed.
     let format = out.as_deref().map(format).transpose()?;
-    let figure = plot::figure(&args.name)?;
+    let drawing = plot::figure(&args.name)?.drawing();
     match out.zip(format) {
-        Some((path, Format::Svg)) => write_file(&path, figure.svg().as_bytes())?,
-        Some((path, Format::Png)) => write_file(&path, &figure.png()?)?,
-        None => print(&figure.svg())?,
+        Some((path, Format::Svg)) => write_file(&path, drawing.svg().as_bytes())?,
+        Some((path, Format::Png)) => write_file(&path, &drawing.png()?)?,
+        None => print(&drawing.svg())?,
     }
     Ok(Done::Ok)
 }

@@ -18,15 +18,17 @@ const SHAPES: [f64; 2] = [1.5, 40.0];
 impl Paper {
     /// Each figure as SVG and as PNG.
     pub(super) fn drawings(&self) -> Result<Vec<(&'static str, Vec<u8>)>, PlotError> {
-        let (times, errors, pictures) = (self.times_figure(), self.error_figure(), self.sheet());
-        Ok(vec![
-            ("figure-4.svg", times.svg().into_bytes()),
-            ("figure-4.png", times.png()?),
-            ("figure-5.svg", errors.svg().into_bytes()),
-            ("figure-5.png", errors.png()?),
-            ("figure-6.svg", pictures.svg()?.into_bytes()),
-            ("figure-6.png", pictures.png()?),
-        ])
+        let drawings = [
+            (["figure-4.svg", "figure-4.png"], self.times_figure().drawing()),
+            (["figure-5.svg", "figure-5.png"], self.error_figure().drawing()),
+            (["figure-6.svg", "figure-6.png"], self.sheet().drawing()),
+        ];
+        let mut files = Vec::new();
+        for ([svg, png], drawing) in drawings {
+            files.push((svg, drawing.svg().into_bytes()));
+            files.push((png, drawing.png()?));
+        }
+        Ok(files)
     }
 
     /// One G1 above, a picture below it, and last a visible normal, over γ and over σ.
@@ -37,30 +39,23 @@ impl Paper {
             (Quantity::Normal, "A visible normal", "ns a call", 1.0),
         ];
         let panels = quantities.into_iter().flat_map(|(quantity, what, unit, scale)| {
-            let of: Vec<&Timing> =
+            let of_quantity: Vec<&Timing> =
                 self.times.iter().filter(|time| time.quantity == quantity).collect();
             // A clock may be too coarse to see a short batch.
-            let values = || of.iter().map(|time| scale * time.ns.max(0.1));
+            let values = || of_quantity.iter().map(|time| scale * time.ns.max(0.1));
             let (low, high) =
                 (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max));
             let y = Axis::log(unit, 0.7 * low, 1.4 * high);
-            let by_gamma = Panel {
-                title: format!("{what}, by γ, σ = {SIGMA}"),
-                x: Axis::log("γ", SHAPES[0], SHAPES[1]),
-                y: y.clone(),
-                curves: time_curves(&of, true, scale),
-                marks: Vec::new(),
+            let over = |x: Axis, of: String, is_by_gamma| {
+                let curves = time_curves(&of_quantity, is_by_gamma, scale);
+                Panel::new(format!("{what}, {of}"), x, y.clone(), curves)
             };
-            let by_sigma = Panel {
-                title: format!("{what}, by σ, γ = {GAMMA}"),
-                x: Axis::linear("σ", 0.0, 1.0),
-                y,
-                curves: time_curves(&of, false, scale),
-                marks: Vec::new(),
-            };
-            [by_gamma, by_sigma]
+            [
+                over(Axis::log("γ", SHAPES[0], SHAPES[1]), format!("by γ, σ = {SIGMA}"), true),
+                over(Axis::linear("σ", 0.0, 1.0), format!("by σ, γ = {GAMMA}"), false),
+            ]
         });
-        Figure::new(panels.collect())
+        Figure::new(panels)
     }
 
     /// By θ, of the approximation and of the table; and over the hemisphere, by γ.
@@ -70,20 +65,12 @@ impl Paper {
             let curve = |(i, of): (usize, &[Approximation])| {
                 // Smaller errors are below the rounding of single precision.
                 let points = of.iter().map(|at| (at.degrees, error(at).abs().max(1e-9)));
-                Curve {
-                    key: Key::Gamma(of[0].gamma),
-                    name: format!("γ = {}", of[0].gamma),
-                    dash: alternate(i),
-                    points: points.collect(),
-                }
+                let name = format!("γ = {}", of[0].gamma);
+                Curve::new(Key::Gamma(of[0].gamma), name, points).dashed(alternate(i))
             };
-            Panel {
-                title: title.into(),
-                x: Axis::linear("θ in degrees", 0.0, 90.0),
-                y: Axis::log("error of G1", 1e-9, 3e-2),
-                curves: shapes.enumerate().map(curve).collect(),
-                marks: Vec::new(),
-            }
+            let curves = shapes.enumerate().map(curve);
+            let x = Axis::linear("θ in degrees", 0.0, 90.0);
+            Panel::new(title, x, Axis::log("error of G1", 1e-9, 3e-2), curves)
         };
         let rows = [
             by_angle("Rational approximation, eq. 22–23", |at| at.rational_error),
@@ -91,7 +78,7 @@ impl Paper {
             self.by_measure(),
             self.by_sigma(),
         ];
-        Figure::new(rows.into())
+        Figure::new(rows)
     }
 
     /// Measures of the error over the hemisphere.
@@ -99,8 +86,7 @@ impl Paper {
         let curves = MEASURES.iter().enumerate().map(|(i, measure)| {
             let curve = self.error_curve(Key::Nth(i), measure.formula.into(), i, SIGMA);
             // The last hides the one before it, as G1 is close to 1 where the error is largest.
-            let dash = if i + 1 == MEASURES.len() { Dash::Dashed } else { Dash::Solid };
-            Curve { dash, ..curve }
+            curve.dashed(if i + 1 == MEASURES.len() { Dash::Dashed } else { Dash::Solid })
         });
         let title = format!("Rational approximation over the hemisphere, σ = {SIGMA}");
         self.over_hemisphere(title, curves.collect())
@@ -111,50 +97,38 @@ impl Paper {
         let curves = SIGMAS.into_iter().enumerate().map(|(i, sigma)| {
             let key = Key::Sigma(sigma);
             let curve = self.error_curve(key, format!("σ = {sigma}"), RELATIVE, sigma);
-            Curve { dash: alternate(i), ..curve }
+            curve.dashed(alternate(i))
         });
         self.over_hemisphere(MEASURES[RELATIVE].formula.into(), curves.collect())
     }
 
     fn error_curve(&self, key: Key, name: String, measure: usize, sigma: f64) -> Curve {
         let of = self.integrated.iter().filter(|at| at.sigma == sigma);
-        let points = of.map(|at| (at.gamma, 1e2 * at.errors[measure])).collect();
-        Curve { key, name, dash: Dash::Solid, points }
+        Curve::new(key, name, of.map(|at| (at.gamma, 1e2 * at.errors[measure])))
     }
 
     /// With what the paper states.
     fn over_hemisphere(&self, title: String, curves: Vec<Curve>) -> Panel {
-        let claim = Curve {
-            key: Key::Method(Plotted::Other),
-            name: "0.7 %, as the paper has it".into(),
-            dash: Dash::Dotted,
-            points: SHAPES.map(|gamma| (gamma, 1e2 * CLAIM)).into(),
-        };
-        Panel {
-            title,
-            x: Axis::log("γ", SHAPES[0], SHAPES[1]),
-            y: Axis::linear("per cent", 0.0, 0.8),
-            curves: curves.into_iter().chain([claim]).collect(),
-            marks: Vec::new(),
-        }
+        let (key, points) = (Key::Method(Plotted::Other), SHAPES.map(|gamma| (gamma, 1e2 * CLAIM)));
+        let claim = Curve::new(key, "0.7 %, as the paper has it", points).dashed(Dash::Dotted);
+        let x = Axis::log("γ", SHAPES[0], SHAPES[1]);
+        let y = Axis::linear("per cent", 0.0, 0.8);
+        Panel::new(title, x, y, curves.into_iter().chain([claim]))
     }
 
     /// The exact picture of each shape, and the differences to it in false colours.
     fn sheet(&self) -> Sheet {
         let tiles = |of: &Compared| {
-            let edge = of.exact.film.edge;
             let colors = of
                 .exact
                 .pixels
                 .iter()
                 .map(|&radiance| (255.0 * srgb(radiance)).to_array().map(|x| x.round() as u8));
             let exact = Tile {
-                edge,
                 content: Content::Colors(colors.collect()),
                 caption: format!("mean radiance {:.2}", of.mean),
             };
             let differences = of.differences.iter().map(|at| Tile {
-                edge,
                 content: Content::Values(at.pixels.clone()),
                 caption: format!("RMSE {:.1e}", at.rmse),
             });
@@ -162,11 +136,17 @@ impl Paper {
         };
         let columns = ["exact G1"].into_iter().chain(FORMS).map(String::from);
         let rows = self.compared.iter().map(|of| (format!("γ = {}", of.gamma), tiles(of)));
+        let title = format!("Rough gold, σ = {SIGMA}: the exact picture, and differences to it");
         Sheet {
-            title: format!("Rough gold, σ = {SIGMA}: the exact picture, and differences to it"),
+            groups: vec![(1 + FORMS.len(), title)],
             columns: columns.collect(),
             rows: rows.collect(),
-            scale: Axis::log("difference of radiance, the largest of the channels", 1e-8, 1e-1),
+            scale: Some(Axis::log(
+                "difference of radiance, the largest of the channels",
+                1e-8,
+                1e-1,
+            )),
+            edge: 160.0,
         }
     }
 }
@@ -191,7 +171,7 @@ fn time_curves(of: &[&Timing], by_gamma: bool, scale: f64) -> Vec<Curve> {
             false => points.map(|time| (time.sigma, y(time))).collect(),
         };
         let dash = if method.is_reference() { Dash::Dashed } else { Dash::Solid };
-        Curve { key: method.key(), name: method.name().into(), dash, points }
+        Curve { points, ..Curve::new(method.key(), method.name(), []).dashed(dash) }
     };
     of.chunk_by(|a, b| a.method == b.method).map(curve).collect()
 }

@@ -130,13 +130,10 @@ impl Picture {
     }
 }
 
-/// What is shown of a radiance: it is exposed, and encoded as sRGB (IEC 61966-2-1).
+/// What is shown of a radiance: it is exposed, and encoded as sRGB.
 pub(super) fn srgb(radiance: DVec3) -> DVec3 {
-    let encode = |x: f64| match (EXPOSURE * x).clamp(0.0, 1.0) {
-        x if x <= 0.003_130_8 => 12.92 * x,
-        x => 1.055 * x.powf(1.0 / 2.4) - 0.055,
-    };
-    DVec3::from(radiance.to_array().map(encode))
+    let shown = |x: f64| microfacet_report::srgb((EXPOSURE * x).clamp(0.0, 1.0));
+    DVec3::from(radiance.to_array().map(shown))
 }
 
 #[cfg(test)]

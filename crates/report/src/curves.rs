@@ -136,13 +136,14 @@ fn figure(name: &str, lines: &[Line], what: &Markup) -> Markup {
         let numbers: Vec<String> = lines.iter().filter_map(|line| at(line, quantity)).collect();
         (title, label, curves, numbers.join(", "))
     });
+    let views = || Axis::linear("θ, the angle of the view, degrees", 0.0, 90.0);
     html! {
         figure {
             div.plots {
                 @for (title, label, curves, numbers) in &drawn {
                     @if !curves.is_empty() {
                         (plot(
-                            panel(title, label, curves.clone()),
+                            Panel::new(*title, views(), Axis::linear(*label, 0.0, 1.0), curves.clone()),
                             &format!("{label}, of {name}. Seen at {STATED}°: {numbers}."),
                         ))
                     }
@@ -166,16 +167,6 @@ fn figure(name: &str, lines: &[Line], what: &Markup) -> Markup {
     }
 }
 
-fn panel(title: &str, label: &str, curves: Vec<Curve>) -> Panel {
-    Panel {
-        title: title.into(),
-        x: Axis::linear("θ, the angle of the view, degrees", 0.0, 90.0),
-        y: Axis::linear(label, 0.0, 1.0),
-        curves,
-        marks: Vec::new(),
-    }
-}
-
 /// A view at this many degrees from the normal, in the azimuth of x.
 fn view(degrees: f64) -> Vec3 {
     let (sin, cos) = degrees.to_radians().sin_cos();
@@ -188,7 +179,7 @@ fn curve(line: &Line, quantity: Quantity) -> Option<Curve> {
         Some((degrees, quantity(line, view(degrees))?))
     };
     let points = (0..=VIEWS).map(point).collect::<Option<Vec<_>>>()?;
-    Some(Curve { key: line.key, name: line.name.clone(), dash: line.dash, points })
+    Some(Curve::new(line.key, &line.name, points).dashed(line.dash))
 }
 
 /// The quantity at the view that is stated, with the name of the lobe.

@@ -11,7 +11,31 @@ pub(super) const SIZE: [f64; 2] = [380.0, 290.0];
 
 /// A panel as an element of the page; `label` says what is seen.
 pub(super) fn plot(panel: Panel, label: &str) -> Markup {
-    PreEscaped(Figure { panels: vec![panel], columns: 1, panel: SIZE }.inline_svg(label))
+    let figure = Figure { panels: vec![panel], columns: 1, panel: SIZE };
+    PreEscaped(figure.drawing().inline_svg(label))
+}
+
+/// A table that scrolls by itself, with headings of words, then of numbers.
+pub(super) fn table(
+    label: &str,
+    caption: &Markup,
+    [words, numbers]: [&[&str]; 2],
+    rows: &Markup,
+) -> Markup {
+    html! {
+        div.scroll tabindex="0" role="region" aria-label=(label) {
+            table {
+                caption { (caption) }
+                thead {
+                    tr {
+                        @for name in words { th scope="col" { (name) } }
+                        @for name in numbers { th.number scope="col" { (name) } }
+                    }
+                }
+                tbody { (rows) }
+            }
+        }
+    }
 }
 
 /// An error to three digits, which no line breaks.

@@ -77,30 +77,24 @@ pub(super) fn section(
 
 /// The furnaces of one lobe.
 fn drawn(set: &Tables, shown: &Shown, rows: &[Furnace]) -> Markup {
-    let curve = |(name, place, dash, share): &(&str, usize, Dash, Share)| Curve {
-        key: Key::Nth(*place),
-        name: (*name).into(),
-        dash: *dash,
-        points: rows.iter().map(|row| (row.cos_theta, share(row))).collect(),
+    let curve = |&(name, place, dash, share): &(&str, usize, Dash, Share)| {
+        let points = rows.iter().map(|row| (row.cos_theta, share(row)));
+        Curve::new(Key::Nth(place), name, points).dashed(dash)
     };
     let [single, kulla_conty, turquin] = SHARES.map(|(.., share)| furthest(rows, share));
     let least = rows.iter().flat_map(|row| SHARES.map(|(.., share)| share(row)));
     // A tenth below what is lowest, so that no curve lies on the edge.
     let low = ((least.fold(1.0, f64::min) * 10.0).floor() / 10.0 - 0.1).clamp(0.0, 0.8);
-    let panel = Panel {
-        title: "White furnace".into(),
-        x: Axis::linear("cos θ, 0 for a grazing view", 0.0, 1.0),
-        y: Axis::linear("share of light that returns", low, 1.05),
-        curves: SHARES.iter().map(curve).collect(),
-        marks: Vec::new(),
-    };
-    let lost = format!("{:.1}%", 100.0 * single.off);
+    let x = Axis::linear("cos θ, 0 for a grazing view", 0.0, 1.0);
+    let y = Axis::linear("share of light that returns", low, 1.05);
+    let panel = Panel::new("White furnace", x, y, SHARES.iter().map(curve));
+    let lost = format!("{:.1}%", 100.0 * single[0]);
     let label = format!(
         "White furnace of {}: one bounce is off 1 by at most {lost}, with Kulla–Conty's lobe {}, \
          with Turquin's scaling {}",
         shown.name,
-        error(kulla_conty.off),
-        error(turquin.off)
+        error(kulla_conty[0]),
+        error(turquin[0])
     );
     let own = set.albedo(shown.round_sigma(), shown.gamma, shown.masking()).is_ok();
     html! {
@@ -109,9 +103,9 @@ fn drawn(set: &Tables, shown: &Shown, rows: &[Furnace]) -> Markup {
             figcaption {
                 b { bdi { (shown.name) } } ": " (shown.description()) ", "
                 (shown.masking()) " masking. "
-                "One bounce loses up to " (lost) ", at cos\u{a0}θ\u{a0}=\u{a0}" (single.cos_theta) ". "
-                "The largest deviation from 1 is " (error(kulla_conty.off))
-                " with Kulla–Conty's lobe and " (error(turquin.off)) " with Turquin's scaling. "
+                "One bounce loses up to " (lost) ", at cos\u{a0}θ\u{a0}=\u{a0}" (single[1]) ". "
+                "The largest deviation from 1 is " (error(kulla_conty[0]))
+                " with Kulla–Conty's lobe and " (error(turquin[0])) " with Turquin's scaling. "
                 @if shown.sigma[0] != shown.sigma[1] {
                     "All three are of the round lobe of √(σx σy), which stands in for it. "
                 }
@@ -121,18 +115,9 @@ fn drawn(set: &Tables, shown: &Shown, rows: &[Furnace]) -> Markup {
     }
 }
 
-/// How far from 1 a share is at most, and where.
-struct Furthest {
-    off: f64,
-    cos_theta: f64,
-}
-
-fn furthest(rows: &[Furnace], share: Share) -> Furthest {
-    let off = |row: &Furnace| (share(row) - 1.0).abs();
+/// How far from 1 a share is at most, and the cosine there.
+fn furthest(rows: &[Furnace], share: Share) -> [f64; 2] {
+    let off = rows.iter().map(|row| [(share(row) - 1.0).abs(), row.cos_theta]);
     // A NaN is larger than any number.
-    let worst = rows.iter().max_by(|a, b| off(a).total_cmp(&off(b)));
-    worst.map_or(Furthest { off: f64::NAN, cos_theta: f64::NAN }, |row| Furthest {
-        off: off(row),
-        cos_theta: row.cos_theta,
-    })
+    off.max_by(|a, b| a[0].total_cmp(&b[0])).unwrap_or([f64::NAN; 2])
 }

@@ -24,14 +24,12 @@ mod subjects;
 mod validated;
 pub mod words;
 
-use std::fmt;
-
 use microfacet_baker::progress::Meter;
 use microfacet_sampler::{MaterialError, Tables};
 use microfacet_tables::LoadError;
 use microfacet_validate::record::Record;
 
-pub use sphere::{Film, Look, picture};
+pub use sphere::{Film, Look, picture, srgb};
 
 /// What a page is made of.
 #[derive(Clone, Copy, Debug)]
@@ -45,12 +43,19 @@ pub struct Source<'a> {
 }
 
 /// Why there is no page.
+#[derive(thiserror::Error)]
 pub enum ReportError {
     /// The set has neither tables nor materials.
+    #[error("the set has no tables and no materials; name what `microfacet-bake bake` wrote")]
     Empty,
     /// The set does not hold what it declares to cover.
-    Material(MaterialError),
+    #[error(transparent)]
+    Material(#[from] MaterialError),
     /// The validation is of another set.
+    #[error(
+        "a validation of another set ({of:?}, and this one is {set:?}); give one of the set that \
+         is reported"
+    )]
     OtherSet {
         /// The identity of that.
         of: String,
@@ -58,36 +63,11 @@ pub enum ReportError {
         set: String,
     },
     /// The set could not be written, and so has no identity.
+    #[error(transparent)]
     Unsound(LoadError),
 }
 
-impl fmt::Display for ReportError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Empty => write!(
-                f,
-                "the set has no tables and no materials; name what `microfacet-bake bake` wrote"
-            ),
-            Self::Material(why) => write!(f, "{why}"),
-            Self::OtherSet { of, set } => write!(
-                f,
-                "a validation of another set ({of:?}, and this one is {set:?}); give one of the set \
-                 that is reported"
-            ),
-            Self::Unsound(why) => write!(f, "{why}"),
-        }
-    }
-}
-
 microfacet_core::debug_in_words!(ReportError);
-
-impl std::error::Error for ReportError {}
-
-impl From<MaterialError> for ReportError {
-    fn from(why: MaterialError) -> Self {
-        Self::Material(why)
-    }
-}
 
 /// Whether a set has anything to show: a page of a set without tables and materials is refused.
 pub fn has_page(set: &Tables) -> bool {

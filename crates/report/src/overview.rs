@@ -7,7 +7,7 @@ use microfacet_sampler::Tables;
 use microfacet_tables::{Provenance, Table};
 
 use super::Source;
-use super::drawing::{code, error, symbols};
+use super::drawing::{code, error, symbols, table};
 use super::served::{Served, served};
 use crate::words::table::{albedos, axis, covers, holds, normals, precision};
 use crate::words::{bytes, certificate, count};
@@ -51,33 +51,26 @@ fn ranges(set: &Tables) -> Markup {
 fn materials(set: &Tables) -> Markup {
     let all = served(set);
     let shown = &all[..all.len().min(ROWS)];
-    html! {
-        div.scroll tabindex="0" role="region" aria-label="Materials" {
-            table {
-                caption {
-                    "Materials. Bytes are those of the tables that a material reads, some of which \
-                     others may share."
-                }
-                thead {
-                    tr {
-                        @for name in ["name", "σ", "γ or distribution", "masking", "Fresnel", "normals", "albedo"] {
-                            th scope="col" { (name) }
-                        }
-                        th.number scope="col" { "bytes" }
-                    }
-                }
-                tbody {
-                    @for Served { name, sigma, shape, masking, fresnel, lobe, albedo, bytes: size } in shown {
-                        tr {
-                            th scope="row" { bdi { (name) } }
-                            @for cell in [sigma, shape, masking, fresnel] { td { (symbols(cell)) } }
-                            @for part in [lobe, albedo] { td { (part.what) } }
-                            td.number { (bytes(*size)) }
-                        }
-                    }
-                }
+    let caption = html! {
+        "Materials. Bytes are those of the tables that a material reads, some of which others may \
+         share."
+    };
+    let head: [&[&str]; 2] = [
+        &["name", "σ", "γ or distribution", "masking", "Fresnel", "normals", "albedo"],
+        &["bytes"],
+    ];
+    let rows = html! {
+        @for Served { name, sigma, shape, masking, fresnel, lobe, albedo, bytes: size } in shown {
+            tr {
+                th scope="row" { bdi { (name) } }
+                @for cell in [sigma, shape, masking, fresnel] { td { (symbols(cell)) } }
+                @for part in [lobe, albedo] { td { (part.what) } }
+                td.number { (bytes(*size)) }
             }
         }
+    };
+    html! {
+        (table("Materials", &caption, head, &rows))
         @if all.len() > shown.len() {
             p.note { "and " (count(all.len() - shown.len(), "more material")) }
         }
@@ -139,25 +132,15 @@ fn tables(set: &Tables) -> Markup {
             p { "The set has no tables: its materials have closed forms, or tables of another set." }
         };
     }
+    let caption = html! {
+        (count(all.len(), "table")) ", " (bytes(total))
+        ". The error is the largest that was measured off the nodes when the table was baked."
+    };
+    let head: [&[&str]; 2] = [&["table", "γ", "σ", "nodes", "type", "largest error"], &["bytes"]];
+    let rows = html! { @for table in all.iter().take(ROWS) { (row(table)) } };
     html! {
         h3 { "Tables" }
-        div.scroll tabindex="0" role="region" aria-label="Tables" {
-            table {
-                caption {
-                    (count(all.len(), "table")) ", " (bytes(total))
-                    ". The error is the largest that was measured off the nodes when the table \
-                     was baked."
-                }
-                thead {
-                    tr {
-                        @for name in ["table", "γ", "σ", "nodes", "type"] { th scope="col" { (name) } }
-                        th.number scope="col" { "bytes" }
-                        th scope="col" { "largest error" }
-                    }
-                }
-                tbody { @for table in all.iter().take(ROWS) { (row(table)) } }
-            }
-        }
+        (table("Tables", &caption, head, &rows))
         @if all.len() > ROWS { p.note { "and " (count(all.len() - ROWS, "more table")) } }
         details {
             summary { "Axes and certificates" }
@@ -185,13 +168,13 @@ fn row(table: &Table) -> Markup {
             td { (symbols(&sigma)) }
             td { (nodes.join("\u{a0}×\u{a0}")) }
             td { (precision(table.precision)) }
-            td.number { (bytes(table.stored_bytes())) }
             td {
                 @match table.certificate.largest() {
                     Some((what, max)) => { (certificate::column(what)) " " (error(max)) }
                     None => "not measured",
                 }
             }
+            td.number { (bytes(table.stored_bytes())) }
         }
     }
 }

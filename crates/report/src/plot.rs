@@ -2,10 +2,9 @@
 //! fonts of the system.
 
 mod axis;
-mod canvas;
 mod clip;
+mod drawing;
 mod figures;
-mod frame;
 mod heat;
 mod ink;
 mod label;
@@ -16,11 +15,10 @@ mod sheet;
 mod svg;
 mod text;
 
-use std::fmt;
-
 pub use axis::Axis;
+pub use drawing::Drawing;
 pub use figures::{FIGURES, Listed, figure};
-pub use heat::{Bar, HeatMap};
+pub use heat::{HeatMap, bar};
 pub use ink::{Dash, Key, Method};
 pub use sheet::{Content, Sheet, Tile};
 
@@ -35,6 +33,24 @@ pub struct Curve {
     pub dash: Dash,
     /// (x, y), x ascending; a point with NaN interrupts it.
     pub points: Vec<(f64, f64)>,
+}
+
+impl Curve {
+    /// A curve without gaps.
+    pub fn new(
+        key: Key,
+        name: impl Into<String>,
+        points: impl IntoIterator<Item = (f64, f64)>,
+    ) -> Self {
+        let points = points.into_iter().collect();
+        Self { key, name: name.into(), dash: Dash::Solid, points }
+    }
+
+    /// The same with dashes.
+    #[must_use]
+    pub fn dashed(self, dash: Dash) -> Self {
+        Self { dash, ..self }
+    }
 }
 
 /// A point with its name beside it.
@@ -67,6 +83,17 @@ pub struct Panel {
 }
 
 impl Panel {
+    /// A panel of curves.
+    pub fn new(
+        title: impl Into<String>,
+        x: Axis,
+        y: Axis,
+        curves: impl IntoIterator<Item = Curve>,
+    ) -> Self {
+        let curves = curves.into_iter().collect();
+        Self { title: title.into(), x, y, curves, marks: Vec::new() }
+    }
+
     /// Where a point stands: (0, 0) is the left lower corner, (1, 1) the right upper one.
     fn place(&self, (x, y): (f64, f64)) -> [f64; 2] {
         [self.x.fraction(x), self.y.fraction(y)]
@@ -87,75 +114,51 @@ pub struct Figure {
 
 impl Figure {
     /// Panels two in a row.
-    pub fn new(panels: Vec<Panel>) -> Self {
-        Self { panels, columns: 2, panel: [560.0, 400.0] }
+    pub fn new(panels: impl IntoIterator<Item = Panel>) -> Self {
+        Self { panels: panels.into_iter().collect(), columns: 2, panel: [560.0, 400.0] }
     }
 
-    /// As SVG, without references to anything outside it.
-    pub fn svg(&self) -> String {
-        svg::write(&layout::page(self))
-    }
-
-    /// As an element of an HTML page, of class `plot`: as wide as its place, in the page's fonts,
-    /// with colours for light and dark; `label` is read to those who do not see it. The page
-    /// defines the custom properties `--ink` and `--line`.
-    pub fn inline_svg(&self, label: &str) -> String {
-        svg::write_inline(&layout::page(self), label)
-    }
-
-    /// As PNG, with two pixels along each of the page.
-    ///
-    /// # Errors
-    /// [`PlotError::Drawing`] for a figure without panels, or larger than memory.
-    pub fn png(&self) -> Result<Vec<u8>, PlotError> {
-        png::write(&layout::page(self))
+    /// Draws it.
+    pub fn drawing(&self) -> Drawing {
+        layout::drawing(self)
     }
 }
 
 /// Why a figure was not drawn.
-#[derive(Clone, PartialEq, Eq)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum PlotError {
     /// No figure has this name.
+    #[error("no figure `{0}`; there are {names}", names = FIGURES.map(|of| of.name).join(", "))]
     Unknown(String),
     /// Why there is no image.
+    #[error("the figure could not be drawn: {0}")]
     Drawing(String),
 }
 
-impl fmt::Display for PlotError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Unknown(name) => {
-                let names = FIGURES.map(|listed| listed.name);
-                write!(f, "no figure `{name}`; there are {}", names.join(", "))
-            }
-            Self::Drawing(why) => write!(f, "the figure could not be drawn: {why}"),
-        }
-    }
-}
-
 microfacet_core::debug_in_words!(PlotError);
-
-impl std::error::Error for PlotError {}
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn curve(key: Key, points: &[(f64, f64)]) -> Curve {
-        Curve { key, name: format!("{key:?}"), dash: Dash::Solid, points: points.into() }
+        Curve::new(key, format!("{key:?}"), points.to_vec())
     }
 
     fn panel(curves: Vec<Curve>) -> Panel {
-        let (x, y) = (Axis::linear("x", 0.0, 1.0), Axis::log("y", 1.0, 100.0));
-        Panel { title: "a panel".into(), x, y, curves, marks: Vec::new() }
+        Panel::new("a panel", Axis::linear("x", 0.0, 1.0), Axis::log("y", 1.0, 100.0), curves)
+    }
+
+    fn svg(panels: Vec<Panel>) -> String {
+        Figure::new(panels).drawing().svg()
     }
 
     #[test]
     fn a_colour_follows_from_the_key_wherever_it_stands() {
         let line = [(0.0, 2.0), (1.0, 3.0)];
         let [two, three] = [2.0, 3.0].map(|gamma| curve(Key::Gamma(gamma), &line));
-        let both = Figure::new(vec![panel(vec![two.clone(), three.clone()])]).svg();
-        let one = Figure::new(vec![panel(vec![three])]).svg();
+        let both = svg(vec![panel(vec![two.clone(), three.clone()])]);
+        let one = svg(vec![panel(vec![three])]);
         let strokes = |drawn: &str| -> Vec<String> {
             let wide = drawn.lines().filter(|line| line.contains("stroke-width=\"2\""));
             let stroke = |line: &str| {
@@ -173,7 +176,7 @@ mod tests {
     #[test]
     fn rows_that_share_a_legend_have_one() {
         let of = |gamma| panel(vec![curve(Key::Gamma(gamma), &[(0.0, 2.0), (1.0, 3.0)])]);
-        let count = |figure: &Figure| figure.svg().matches(">Gamma(").count();
+        let count = |figure: &Figure| figure.drawing().svg().matches(">Gamma(").count();
         let mut figure = Figure::new(vec![of(2.0), of(2.0), of(2.0)]);
         assert_eq!(count(&figure), 1);
         figure.panels[2] = of(3.0);
@@ -184,12 +187,12 @@ mod tests {
     fn a_curve_that_leaves_is_marked_in_its_colour() {
         let key = Key::Gamma(2.0);
         let leaves = curve(key, &[(0.0, 10.0), (0.5, 1000.0), (1.0, 10.0)]);
-        let drawn = Figure::new(vec![panel(vec![leaves])]).svg();
+        let drawn = svg(vec![panel(vec![leaves])]);
         let [r, g, b] = key.color();
         let triangle = format!("<polygon fill=\"#{r:02x}{g:02x}{b:02x}\"");
         assert_eq!(drawn.matches(&triangle).count(), 2, "{drawn}");
         let stays = curve(key, &[(0.0, 1.0), (1.0, 100.0)]);
-        assert!(!Figure::new(vec![panel(vec![stays])]).svg().contains("<polygon"));
+        assert!(!svg(vec![panel(vec![stays])]).contains("<polygon"));
     }
 
     #[test]
@@ -204,33 +207,40 @@ mod tests {
         panel.marks = (0..6).map(mark).collect();
         // Neither do they lie on a curve.
         panel.curves = vec![curve(Key::Gamma(2.0), &[(0.0, 10.0), (1.0, 10.0)])];
-        let drawn = Figure::new(vec![panel]).svg();
-        let mut lines: Vec<f64> = drawn
+        let drawn = svg(vec![panel]);
+        let names: Vec<[f64; 3]> = drawn
             .lines()
             .filter(|line| line.contains(">rival "))
-            .map(|line| line.split('"').nth(3).unwrap().parse().unwrap())
+            .map(|line| {
+                let at = |i| line.split('"').nth(i).unwrap().parse::<f64>().unwrap();
+                let (left, width) = (line.contains("\"end\""), text::width("rival 0", 10.5));
+                [if left { at(1) - width } else { at(1) }, at(3), width]
+            })
             .collect();
-        lines.sort_by(f64::total_cmp);
-        assert_eq!(lines.len(), 6);
-        assert!(lines.windows(2).all(|pair| pair[1] - pair[0] > 10.0), "{lines:?}");
+        assert_eq!(names.len(), 6);
+        let meet =
+            |a: &[f64; 3], b: &[f64; 3]| (a[0] - b[0]).abs() < a[2] && (a[1] - b[1]).abs() < 10.0;
+        for (i, a) in names.iter().enumerate() {
+            assert!(names[..i].iter().all(|b| !meet(a, b)), "{names:?}");
+        }
         let line = drawn.lines().find(|line| line.contains("stroke-width=\"2\"")).unwrap();
         let height = line.rsplit([',', '"']).nth(1).unwrap().parse::<f64>().unwrap();
         // Baselines are some pixels beneath the middles of names.
-        let clear = |y: &f64| (y - 3.8 - height).abs() > 6.0;
-        assert!(lines.iter().all(clear), "{lines:?} at {height}");
+        let clear = |name: &[f64; 3]| (name[1] - 3.8 - height).abs() > 6.0;
+        assert!(names.iter().all(clear), "{names:?} at {height}");
     }
 
     #[test]
     fn png_has_the_size_of_the_page_twice_and_the_colours_of_svg() {
         let key = Key::Gamma(2.0);
         let figure = Figure::new(vec![panel(vec![curve(key, &[(0.0, 10.0), (1.0, 10.0)])])]);
-        let page = layout::page(&figure).size.map(|x| 2 * x as u32);
-        let image = image::load_from_memory(&figure.png().unwrap()).unwrap().to_rgb8();
+        let page = figure.drawing().size.map(|x| 2 * x as u32);
+        let image = image::load_from_memory(&figure.drawing().png().unwrap()).unwrap().to_rgb8();
         assert_eq!([image.width(), image.height()], page);
         let count = image.pixels().filter(|pixel| pixel.0 == key.color()).count();
         // The curve is four pixels wide, as long as the panel.
         assert!((3000..5000).contains(&count), "{count}");
-        assert!(Figure::new(Vec::new()).png().is_err());
+        assert!(Figure::new([]).drawing().png().is_err());
     }
 
     #[test]
@@ -249,7 +259,7 @@ mod tests {
                     assert!(curve.points.iter().all(|p| p.0.is_finite()), "{at}");
                 }
             }
-            let drawn = figure.svg();
+            let drawn = figure.drawing().svg();
             let document = roxmltree::Document::parse(&drawn).unwrap();
             for text in document.descendants().filter_map(|node| node.text()) {
                 assert!(text::has_all(text.trim()), "{name}: no letter for \"{text}\"");

@@ -15,49 +15,11 @@ const STOPS: usize = 64;
 /// Most materials with curves, a furnace and a picture of their own.
 pub(super) const SHOWN: usize = 8;
 
-/// Stops of γ within a range, as people would type them.
-const ROUND: [f64; 41] = [
-    1.501,
-    1.51,
-    1.52,
-    1.55,
-    1.6,
-    1.65,
-    1.7,
-    1.75,
-    1.8,
-    1.85,
-    1.9,
-    1.95,
-    2.0,
-    2.1,
-    2.2,
-    2.3,
-    2.4,
-    2.5,
-    2.6,
-    2.8,
-    3.0,
-    3.2,
-    3.5,
-    4.0,
-    4.5,
-    5.0,
-    6.0,
-    7.0,
-    8.0,
-    10.0,
-    12.0,
-    15.0,
-    20.0,
-    25.0,
-    30.0,
-    40.0,
-    50.0,
-    60.0,
-    80.0,
-    100.0,
-    f64::INFINITY,
+/// Stops of γ within a range, at short numbers; ∞ is one too.
+const ROUND: [f64; 40] = [
+    1.501, 1.51, 1.52, 1.55, 1.6, 1.65, 1.7, 1.75, 1.8, 1.85, 1.9, 1.95, 2.0, 2.1, 2.2, 2.3, 2.4,
+    2.5, 2.6, 2.8, 3.0, 3.2, 3.5, 4.0, 4.5, 5.0, 6.0, 7.0, 8.0, 10.0, 12.0, 15.0, 20.0, 25.0, 30.0,
+    40.0, 50.0, 60.0, 80.0, 100.0,
 ];
 
 /// Shapes and roughnesses that stand for a set without materials by name.
@@ -175,7 +137,8 @@ fn stops(set: &Tables, materials: &[&MaterialEntry]) -> (Vec<f64>, bool) {
         stops.extend([least, most]);
         if least < most {
             is_range = true;
-            stops.extend(ROUND.iter().copied().filter(|gamma| (least..=most).contains(gamma)));
+            let round = ROUND.into_iter().chain([f64::INFINITY]);
+            stops.extend(round.filter(|gamma| (least..=most).contains(gamma)));
         }
     }
     stops.retain(|&gamma| set.covers(gamma));

@@ -12,6 +12,8 @@ use microfacet_model::{AlbedoIntegrator, Shape};
 use microfacet_sampler::{Masking, MicrofacetDistribution, Tables};
 use rand::{RngExt, SeedableRng};
 
+use crate::Outcome;
+
 /// σ, γ and cos θ_v.
 const VIEWS: [(f64, f64, f64); 6] = [
     (0.1, 2.0, 0.8),
@@ -23,7 +25,7 @@ const VIEWS: [(f64, f64, f64); 6] = [
 ];
 
 /// Prints what the module's page says.
-pub fn run() {
+pub fn run(_: &[String]) -> Outcome {
     let truth: Vec<f64> = VIEWS.iter().map(|&view| quadrature(view, 1e-13)).collect();
     println!(
         "| method | nodes or samples | RMS error | time of one albedo, ms |\n| --- | --- | --- | --- |"
@@ -37,6 +39,7 @@ pub fn run() {
         let (error, time) = timed(&truth, |view| monte_carlo(&tables, view, samples));
         println!("| Monte Carlo | {samples} | {error:.1e} | {time:.3} |");
     }
+    Ok(())
 }
 
 /// Root-mean-square error over the views, and the mean time in milliseconds, including everything

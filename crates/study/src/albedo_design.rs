@@ -11,6 +11,8 @@ use microfacet_model::{AlbedoIntegrator, Shape};
 use microfacet_tables::axis::{ViewBlend, even_nodes, lagrange};
 use rayon::prelude::*;
 
+use crate::Outcome;
+
 /// The coordinate of the view, t(μ), ascending to 1 at normal incidence.
 enum Coordinate {
     /// A function of the view alone.
@@ -79,7 +81,7 @@ const PARTS: [Part; 4] = [
 ];
 
 /// Prints what the module's page says.
-pub fn run() {
+pub fn run(_: &[String]) -> Outcome {
     print!("| coordinate | nodes |");
     PARTS.iter().for_each(|part| print!(" {} |", part.0));
     println!("\n| --- | --- |{}", " --- |".repeat(PARTS.len()));
@@ -99,6 +101,7 @@ pub fn run() {
         let cells = worst.map(|[e, all]| format!("{e:.1e} / {all:.1e}"));
         println!("| {} | {} | {} |", design.name, design.nodes, cells.join(" | "));
     }
+    Ok(())
 }
 
 fn array<T, const N: usize>(of: impl FnMut(usize) -> T) -> [T; N] {

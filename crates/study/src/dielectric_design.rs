@@ -6,9 +6,7 @@
 //! tables, stored in 16 bits, and measured by the certificate, for height-correlated masking. `--
 //! 7` prints the seventh row alone.
 
-use microfacet_baker::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, bake};
-use microfacet_baker::certify::albedo::{certified, edge_references, interior_references};
-use microfacet_baker::progress::Stage;
+use microfacet_baker::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec};
 use microfacet_sampler::Masking;
 use microfacet_tables::axis::{
     CriticalBlend, LogRoughness, LogShape, ReflectanceRoot, ViewBlend, even_nodes,
@@ -16,6 +14,8 @@ use microfacet_tables::axis::{
 use microfacet_tables::{
     Axis, Errors, Interpolation, Interval, Mapping, Precision, Reflectance, Roughness, Side,
 };
+
+use crate::{Outcome, baked};
 
 /// Error aimed at in a node. Estimates are careful: at places throughout the domain even 1e-2 gives
 /// values that are right to 2e-4.
@@ -111,10 +111,7 @@ const DESIGNS: [Design; 7] = [
 /// The largest and the root-mean-square error of either share in the promised range, and the
 /// largest outside.
 fn errors(spec: &AlbedoSpec) -> Result<String, AlbedoError> {
-    let stage = Stage::unwatched();
-    let tables = bake(spec)?;
-    let places = [interior_references(spec, &stage)?, edge_references(spec, &stage)?].concat();
-    let tables = certified(spec, tables, &places, &stage)?;
+    let tables = baked(spec)?;
     let all: Vec<Errors> =
         tables.iter().flat_map(|table| table.certificate.errors.values().copied()).collect();
     let worst =
@@ -124,7 +121,7 @@ fn errors(spec: &AlbedoSpec) -> Result<String, AlbedoError> {
 }
 
 /// Prints what the module's page says.
-pub fn run(arguments: &[String]) -> Result<(), AlbedoError> {
+pub fn run(arguments: &[String]) -> Outcome {
     let row: Option<usize> = arguments.first().and_then(|row| row.parse().ok());
     println!("| covered | γ × σ × η | views | bytes | thin side | dense side |");
     println!("| --- | --- | --- | --- | --- | --- |");

@@ -5,13 +5,13 @@
 //! `docs/albedo.md`, the largest error in the promised range over some roughnesses and indices; and
 //! the same at one γ for parameters beside those of three parts.
 
-use microfacet_baker::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, bake};
-use microfacet_baker::certify::albedo::{certified, edge_references, interior_references};
-use microfacet_baker::progress::Stage;
+use microfacet_baker::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec};
 use microfacet_baker::table_spec::Quality;
 use microfacet_sampler::Masking;
 use microfacet_tables::axis::CriticalBlend;
 use microfacet_tables::{Axis, Interpolation, Mapping, Precision, Quantity, Reflectance, Side};
+
+use crate::{Outcome, baked};
 
 const GAMMAS: [f64; 5] = [1.501, 1.55, 1.7, 1.9, 3.0];
 const SIGMAS: [f64; 3] = [0.1, 0.3, 1.0];
@@ -32,9 +32,7 @@ fn errors(
     let mapping = Mapping::CriticalBlend(blend);
     let view = Axis::placed("view", mapping, Interpolation::Lagrange6, views);
     *spec.axes.last_mut().expect("the view is an axis") = view;
-    let stage = Stage::unwatched();
-    let places = [interior_references(&spec, &stage)?, edge_references(&spec, &stage)?].concat();
-    let tables = certified(&spec, bake(&spec)?, &places, &stage)?;
+    let tables = baked(&spec)?;
     let largest = |of| tables[0].certificate.errors.get(&of).map_or(f64::NAN, |of| of.largest);
     Ok([Quantity::Reflection, Quantity::Transmission].map(largest))
 }
@@ -50,7 +48,7 @@ fn worst(gamma: f64, views: (CriticalBlend, usize)) -> Result<String, AlbedoErro
 }
 
 /// Prints what the module's page says.
-pub fn run() -> Result<(), AlbedoError> {
+pub fn run(_: &[String]) -> Outcome {
     println!("| γ | two parts, 65 views: reflected, transmitted | three parts, 67 views |");
     println!("| --- | --- | --- |");
     for gamma in GAMMAS {

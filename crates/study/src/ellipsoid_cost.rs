@@ -15,6 +15,8 @@ use glam::{DVec3, Vec3};
 use microfacet_model as model;
 use microfacet_sampler::{MicrofacetDistribution, Skew, Tables};
 
+use crate::Outcome;
+
 /// Draws of each input in a round, and rounds.
 const PASSES: usize = 4;
 const ROUNDS: usize = 500;
@@ -52,7 +54,7 @@ fn least(mut a: impl FnMut() -> f64, mut b: impl FnMut() -> f64) -> [f64; 2] {
 }
 
 /// Prints what the module's page says.
-pub fn run() -> Result<(), Box<dyn Error>> {
+pub fn run(_: &[String]) -> Outcome {
     let (tables, inputs) = (Tables::embedded(), inputs());
     let sigma = [0.2, 0.5];
     for theta in [[0.0, 0.0, 0.3], [0.02, 0.01, 0.3], [0.1, 0.05, 0.3]] {

@@ -7,7 +7,6 @@
 //! hemisphere of the macro normal. γ = 2 is the note's own distribution; the others are those of
 //! the family.
 
-use std::error::Error;
 use std::f64::consts::{FRAC_PI_4, PI};
 
 use glam::DVec3;
@@ -15,6 +14,8 @@ use microfacet_model::{Ellipsoid, Lune, Masking, MicrofacetDistribution, Skew};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
+
+use crate::Outcome;
 
 /// Ellipsoids of each shape, and draws of each.
 const ELLIPSOIDS: u64 = 1000;
@@ -33,7 +34,7 @@ fn any(rng: &mut StdRng, gamma: f64) -> (Ellipsoid, DVec3) {
 }
 
 /// Prints what the module's page says.
-pub fn run() -> Result<(), Box<dyn Error>> {
+pub fn run(_: &[String]) -> Outcome {
     println!("Weights G2/G1 of reflected samples, {} of each shape:", ELLIPSOIDS * DRAWS as u64);
     println!("{:<8}{:>24}{:>24}", "gamma", "G1(v) G1(l): largest", "correlated: largest");
     for gamma in [1.6, 2.0, 2.7, 8.0, f64::INFINITY] {

@@ -25,8 +25,13 @@ pub mod table_design;
 
 use std::error::Error;
 
-/// What runs a study, given what follows its name on the command line.
-pub type Run = fn(&[String]) -> Result<(), Box<dyn Error>>;
+use microfacet_baker::bake::albedo::{AlbedoError, AlbedoSpec, bake};
+use microfacet_baker::certify::albedo::{certified, edge_references, interior_references};
+use microfacet_baker::progress::Stage;
+use microfacet_tables::Table;
+
+/// How a study ends.
+pub type Outcome = Result<(), Box<dyn Error>>;
 
 /// A study, as the command line names it.
 #[derive(Clone, Copy, Debug)]
@@ -35,55 +40,55 @@ pub struct Study {
     pub name: &'static str,
     /// What it shows.
     pub what: &'static str,
-    /// Prints it.
-    pub run: Run,
+    /// Prints it, given what follows its name on the command line.
+    pub run: fn(&[String]) -> Outcome,
 }
 
-const fn study(name: &'static str, what: &'static str, run: Run) -> Study {
+const fn study(name: &'static str, what: &'static str, run: fn(&[String]) -> Outcome) -> Study {
     Study { name, what, run }
 }
 
 /// All of them, by name.
 pub const STUDIES: [Study; 18] = [
-    study("albedo_convergence", "error against time of one directional albedo", |_| {
-        albedo_convergence::run();
-        Ok(())
-    }),
-    study("albedo_design", "coordinates of the view for albedos", |_| {
-        albedo_design::run();
-        Ok(())
-    }),
-    study("dielectric_design", "tables of albedos of dielectrics: errors and sizes [ROW]", |row| {
-        Ok(dielectric_design::run(row)?)
-    }),
-    study("dielectric_views", "nodes of views from inside a dielectric", |_| {
-        Ok(dielectric_views::run()?)
-    }),
-    study("ellipsoid_cost", "time of a normal of an ellipsoid", |_| ellipsoid_cost::run()),
-    study("ellipsoid_note", "the claims of the Ellipsoid note", |_| ellipsoid_note::run()),
-    study("engines", "errors of the albedos that engines ship [FOLDER]", |folder| {
-        engines::run(folder);
-        Ok(())
-    }),
+    study(
+        "albedo_convergence",
+        "error against time of one directional albedo",
+        albedo_convergence::run,
+    ),
+    study("albedo_design", "coordinates of the view for albedos", albedo_design::run),
+    study(
+        "dielectric_design",
+        "tables of albedos of dielectrics: errors and sizes [ROW]",
+        dielectric_design::run,
+    ),
+    study("dielectric_views", "nodes of views from inside a dielectric", dielectric_views::run),
+    study("ellipsoid_cost", "time of a normal of an ellipsoid", ellipsoid_cost::run),
+    study("ellipsoid_note", "the claims of the Ellipsoid note", ellipsoid_note::run),
+    study("engines", "errors of the albedos that engines ship [FOLDER]", engines::run),
     study("merl", "makes files in the format of the MERL database [--start] FOLDER", merl::run),
     study(
         "planner_seconds",
         "what bakes take beside their estimates [COUNT]",
         planner_seconds::run,
     ),
-    study("printed_formulas", "the printed formulas for masking beside ours", |_| {
-        printed_formulas::run();
-        Ok(())
-    }),
+    study(
+        "printed_formulas",
+        "the printed formulas for masking beside ours",
+        printed_formulas::run,
+    ),
     study("progress", "how far the time left is off TARGET [RECIPE]", progress::run),
     study("reference", "writes the test vectors FILE", reference::run),
     study("report_sphere", "the sphere of a page by the crate's BSDFs; --help", report_sphere::run),
-    study("reproduced", "numbers that papers print beside figures", |_| reproduced::run()),
-    study("sawicki", "the equations of Sawicki 2021", |_| sawicki::run()),
+    study("reproduced", "numbers that papers print beside figures", reproduced::run),
+    study("sawicki", "the equations of Sawicki 2021", sawicki::run),
     study("spheres", "figures 7 to 9 of Ribardiere et al. 2017; --help", spheres::run),
-    study("student_t_paper", "the equations of Ribardiere et al. 2017", |_| student_t_paper::run()),
-    study("table_design", "designs of the table of visible slopes", |_| {
-        table_design::run();
-        Ok(())
-    }),
+    study("student_t_paper", "the equations of Ribardiere et al. 2017", student_t_paper::run),
+    study("table_design", "designs of the table of visible slopes", table_design::run),
 ];
+
+/// The albedo tables of a specification, with their certificates.
+fn baked(spec: &AlbedoSpec) -> Result<Vec<Table>, AlbedoError> {
+    let stage = Stage::unwatched();
+    let places = [interior_references(spec, &stage)?, edge_references(spec, &stage)?].concat();
+    certified(spec, bake(spec)?, &places, &stage)
+}

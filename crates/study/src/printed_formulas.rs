@@ -7,6 +7,8 @@
 use microfacet_model::Shape;
 use microfacet_model::printed::{FORMS, Form};
 
+use crate::Outcome;
+
 const GAMMAS: [f64; 12] = [1.51, 1.6, 2.0, 2.5, 3.0, 10.0, 10.5, 40.0, 40.5, 100.0, 150.0, 1000.0];
 
 /// z = cot θ/σ from 1e-6 to 1e4.
@@ -15,7 +17,7 @@ fn cotangents() -> impl Iterator<Item = f64> {
 }
 
 /// Prints what the module's page says.
-pub fn run() {
+pub fn run(_: &[String]) -> Outcome {
     println!(
         "| eq. | gamma | largest error of G1 | at z | largest G1 - 1 | smallest G1 | no digit of lambda from z |"
     );
@@ -30,6 +32,7 @@ pub fn run() {
             }
         }
     }
+    Ok(())
 }
 
 /// The cells of one form at one γ.

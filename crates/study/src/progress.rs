@@ -11,7 +11,6 @@
 //! The first argument is a quality or a largest error, the second a recipe or scene; without one
 //! the general set is baked.
 
-use std::error::Error;
 use std::path::Path;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
@@ -21,8 +20,10 @@ use microfacet_baker::table_set::{Settings, Target, bake_with};
 use microfacet_baker::table_spec::Quality;
 use microfacet_tables::Precision;
 
+use crate::Outcome;
+
 /// Prints what the module's page says.
-pub fn run(arguments: &[String]) -> Result<(), Box<dyn Error>> {
+pub fn run(arguments: &[String]) -> Outcome {
     let [target, recipe @ ..] = arguments else {
         return Err("which quality or error? default, high, or a number".into());
     };

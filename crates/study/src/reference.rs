@@ -7,7 +7,6 @@
 //! written so that they are read back as they are. `docs/format.md` says what the columns are.
 
 use std::collections::HashMap;
-use std::error::Error;
 use std::fmt::{Debug, Write};
 
 use glam::{DVec3, Vec3};
@@ -17,11 +16,13 @@ use microfacet_model::{Albedo, AlbedoIntegrator, MicrofacetDistribution as _, St
 use microfacet_sampler::albedo::Moments;
 use microfacet_sampler::{MicrofacetDistribution, Tables};
 
+use crate::Outcome;
+
 const USAGE: &str =
     "usage: cargo run --release -p microfacet-study -- reference docs/reference.csv";
 
 /// Prints what the module's page says.
-pub fn run(arguments: &[String]) -> Result<(), Box<dyn Error>> {
+pub fn run(arguments: &[String]) -> Outcome {
     let [path] = arguments else { return Err(USAGE.into()) };
     Ok(std::fs::write(path, text()).map_err(|why| format!("{path}: {why}"))?)
 }

@@ -5,7 +5,6 @@
 //! sphere.png` writes one, and `--lobe 45` prints the lobe for a view at 45 degrees; `--help` has
 //! the options.
 
-use std::error::Error;
 use std::iter;
 use std::path::PathBuf;
 
@@ -13,6 +12,8 @@ use clap::Parser;
 use microfacet_baker::store;
 use microfacet_report::{Film, Look, picture};
 use microfacet_sampler::{ConductorFresnel, Metal, Tables};
+
+use crate::Outcome;
 
 /// Lights of the lobe, as the page has them.
 const LIGHTS: usize = 721;
@@ -55,7 +56,7 @@ struct Arguments {
 }
 
 /// Prints what the module's page says.
-pub fn run(arguments: &[String]) -> Result<(), Box<dyn Error>> {
+pub fn run(arguments: &[String]) -> Outcome {
     let Arguments { gamma, drawn, sigma, metal, compensation, size, samples, tables, lobe, out } =
         Arguments::parse_from(
             iter::once("report_sphere").chain(arguments.iter().map(String::as_str)),

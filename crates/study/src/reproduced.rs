@@ -9,8 +9,10 @@ use microfacet_fit::convert::{Form, Target};
 use microfacet_report::plot;
 use microfacet_report::plot::Curve;
 
+use crate::Outcome;
+
 /// Prints what the module's page says.
-pub fn run() -> Result<(), Box<dyn std::error::Error>> {
+pub fn run(_: &[String]) -> Outcome {
     println!("Largest values of `plot beckmann-limit` over sigma, in %, after Ribardiere et al.");
     println!("2017, figure 10, with the bounds printed for gamma = 40 and sigma < 1.2:");
     println!("| distance | γ = 30 | γ = 40 | γ = 50 | γ = 100 | printed | kept at γ = 40 |");

@@ -4,7 +4,6 @@
 //! `cargo run --release -p microfacet-study -- sawicki` prints them; `microfacet-bake convert
 //! --table` prints table 2 itself.
 
-use std::error::Error;
 use std::f64::consts::{LN_2, PI};
 
 use microfacet_baker::distribution::DistributionKind;
@@ -16,8 +15,10 @@ use microfacet_fit::convert::table::{COLUMNS, FITTED, rows};
 use microfacet_fit::convert::{formulas, half_angle_parameter};
 use microfacet_model::classic::{self, Gtr, Isotropic};
 
+use crate::Outcome;
+
 /// Prints what the module's page says.
-pub fn run() -> Result<(), Box<dyn Error>> {
+pub fn run(_: &[String]) -> Outcome {
     println!("table 1: the integral of D (m.n) with the printed constant");
     for gamma in [1.5, 2.0, 3.0] {
         let c = 0.1_f64;

@@ -13,6 +13,8 @@ use microfacet_model::{MicrofacetDistribution, StudentT};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
+use crate::Outcome;
+
 /// σx, σy and γ: round and not, light and heavy tails.
 const MATERIALS: [([f64; 2], f64); 6] = [
     ([0.5, 0.5], 1.55),
@@ -24,7 +26,7 @@ const MATERIALS: [([f64; 2], f64); 6] = [
 ];
 
 /// Prints what the module's page says.
-pub fn run() -> Result<(), Box<dyn Error>> {
+pub fn run(_: &[String]) -> Outcome {
     println!(
         "Integral of D (m·n) over the hemisphere (eq. 11; eq. 18 where sigma differs), and p of"
     );

@@ -14,6 +14,8 @@ use microfacet_tables::axis::half_tangent::{half_tangent, slope_at};
 use microfacet_tables::{Kind, Mapping, Precision};
 use rayon::prelude::*;
 
+use crate::Outcome;
+
 const VIEWS: usize = 64;
 const NUMBERS: usize = 16;
 
@@ -184,7 +186,7 @@ fn print_views() {
 }
 
 /// Prints what the module's page says.
-pub fn run() {
+pub fn run(_: &[String]) -> Outcome {
     println!(
         "| stored | view axis | u | γ = 1.8 | 2 | 4 | ∞ |\n| --- | --- | --- | --- | --- | --- | --- |"
     );
@@ -203,4 +205,5 @@ pub fn run() {
         }
     }
     print_views();
+    Ok(())
 }

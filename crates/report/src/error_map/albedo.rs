@@ -22,89 +22,66 @@ pub(crate) fn spec(table: &Table) -> Option<AlbedoSpec> {
     AlbedoSpec::of_table(table, (FINE * table.certificate.worst()).clamp(least, most))
 }
 
-fn known(table: &Table) -> Result<AlbedoSpec, Unmeasured> {
-    let lobe = table.subject.lobe.distribution.as_deref().unwrap_or(&table.name);
-    spec(table).ok_or_else(|| Unmeasured::NoTable(format!("the curve of `{lobe}`")))
-}
-
-/// Directional albedos.
-pub(super) struct Directional<'a> {
+/// Directional albedos, or their averages.
+pub(super) struct Albedos<'a> {
+    /// The directional ones.
     table: &'a Table,
+    /// The averages alone, if it is their errors that are measured.
+    averages: Option<Tables>,
     spec: AlbedoSpec,
+    /// Of materials, and of the view unless averages are measured.
     spans: Vec<Span>,
 }
 
-impl<'a> Directional<'a> {
-    pub(super) fn new(table: &'a Table) -> Result<Self, Unmeasured> {
-        let spec = known(table)?;
-        let (view, _) = spec.axes.split_last().ok_or(Unmeasured::NoAxes)?;
-        let mut spans = materials(&spec);
-        // Views are spaced as for the material of the largest error.
-        let at = coordinates(&spec, spans.iter().map(|span| span.worst(table).unwrap_or(0.5)));
-        let site = Site::new(&spec.axes, &at);
-        spans.push(Span::new(Quantity::Cosine, promised_views(view, site)));
-        Ok(Self { table, spec, spans })
-    }
-}
-
-impl super::Ruler for Directional<'_> {
-    fn spans(&self) -> &[Span] {
-        &self.spans
-    }
-
-    fn errors(&self, places: &[Place], _: usize, stage: &Stage) -> Result<Vec<f64>, Unmeasured> {
-        let view = self.spans.len() - 1;
-        let point = |place: &Place| {
-            let material = coordinates(&self.spec, place[..view].iter().copied());
-            seen(&self.spec, &material, self.spans[view].value(place[view]))
-        };
-        let points = places.iter().map(point).collect();
-        Ok(errors_at(&self.spec, self.table, points, stage)?)
-    }
-}
-
-/// Averages over the views.
-pub(super) struct Average<'a> {
-    directional: &'a Table,
-    /// The averages alone.
-    set: Tables,
-    spec: AlbedoSpec,
-    spans: Vec<Span>,
-}
-
-impl<'a> Average<'a> {
-    pub(super) fn new(set: &'a Tables, table: &Table) -> Result<Self, Unmeasured> {
+impl<'a> Albedos<'a> {
+    pub(super) fn new(set: &'a Tables, table: &'a Table) -> Result<Self, Unmeasured> {
         let is_of = |other: &&Table| other.kind == Kind::Albedo && other.subject == table.subject;
-        let directional = set.tables().iter().find(is_of);
-        let directional =
-            directional.ok_or_else(|| Unmeasured::NoTable("their directional albedo".into()))?;
-        let spec = known(directional)?;
-        let set = Tables::from_tables(Provenance::default(), vec![table.clone()])?;
-        Ok(Self { directional, set, spans: materials(&spec), spec })
+        let (directional, averages) = if table.kind == Kind::Albedo {
+            (table, None)
+        } else {
+            let found = set.tables().iter().find(is_of);
+            let found = found.ok_or_else(|| Unmeasured::NoTable("their directional albedo".into()));
+            (found?, Some(Tables::from_tables(Provenance::default(), vec![table.clone()])?))
+        };
+        let lobe = directional.subject.lobe.distribution.as_deref().unwrap_or(&directional.name);
+        let spec = spec(directional)
+            .ok_or_else(|| Unmeasured::NoTable(format!("the curve of `{lobe}`")))?;
+        let (view, of_material) = spec.axes.split_last().ok_or(Unmeasured::NoAxes)?;
+        let axes = of_material.iter().enumerate();
+        let mut spans: Vec<Span> = axes.map(|(i, axis)| material(&spec, i, axis.clone())).collect();
+        if averages.is_none() {
+            // Views are spaced as for the material of the largest error.
+            let at = coordinates(&spec, spans.iter().map(|span| span.worst(table).unwrap_or(0.5)));
+            let views = promised_views(view, Site::new(&spec.axes, &at));
+            spans.push(Span::new(Quantity::Cosine, views));
+        }
+        Ok(Self { table: directional, averages, spec, spans })
     }
 }
 
-impl super::Ruler for Average<'_> {
+impl super::Ruler for Albedos<'_> {
     fn spans(&self) -> &[Span] {
         &self.spans
     }
 
     fn errors(&self, places: &[Place], _: usize, stage: &Stage) -> Result<Vec<f64>, Unmeasured> {
+        let Self { table, spec, spans, .. } = self;
+        let view = spec.axes.len() - 1;
+        let material = |place: &Place| coordinates(spec, place[..view].iter().copied());
+        let Some(averages) = &self.averages else {
+            let point =
+                |place: &Place| seen(spec, &material(place), spans[view].value(place[view]));
+            return Ok(errors_at(spec, table, places.iter().map(point).collect(), stage)?);
+        };
         let error = |place: &Place| {
-            let at = coordinates(&self.spec, place[..self.spans.len()].iter().copied());
             stage.step();
-            Ok(average_error(&self.set, self.directional, &Site::new(&self.spec.axes, &at))?)
+            Ok(average_error(averages, table, &Site::new(&spec.axes, &material(place)))?)
         };
         places.par_iter().map(error).collect()
     }
 }
 
-/// The axes of materials over the ranges that are promised; γ ascends.
-fn materials(spec: &AlbedoSpec) -> Vec<Span> {
-    let axes = &spec.axes[..spec.axes.len() - 1];
-    axes.iter().enumerate().map(|(i, axis)| material(spec, i, axis.clone())).collect()
-}
-
+/// The axis of a material over the range that is promised; γ ascends.
 fn material(spec: &AlbedoSpec, i: usize, axis: Axis) -> Span {
     let ends = {
         let range = &ranges(spec)[i];

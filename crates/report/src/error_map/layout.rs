@@ -4,7 +4,7 @@ use microfacet_baker::plan;
 use microfacet_tables::{Axis, Interpolation, Kind, Table};
 
 use super::albedo::spec;
-use super::{AXES, Place, Quantity, Span, worse};
+use super::{AXES, Place, Quantity, Span};
 
 /// The axes that a map shows, by their place in the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,7 +62,7 @@ pub fn sides(table: &Table) -> Vec<Sides> {
 
 /// The estimated seconds of one thread that a map takes.
 pub fn seconds(table: &Table, sides: Sides) -> f64 {
-    Layout::new(table, sides).points() as f64 * point_seconds(table)
+    Layout::new(table, sides).counts.iter().product::<usize>() as f64 * point_seconds(table)
 }
 
 /// Seconds of one thread to measure the error of a table at one place.
@@ -80,34 +80,37 @@ fn moves(axis: &Axis) -> bool {
 
 /// Numbers of pixels, and of places along each axis.
 pub(super) struct Layout {
-    /// Along x and y.
+    sides: [Option<usize>; 2],
+    /// Along x and y, and how many places each has along either.
     pub(super) pixels: [usize; 2],
+    each: [usize; 2],
     counts: [usize; AXES],
-    /// Axes of which the largest error is shown.
-    over: [bool; AXES],
+    /// The axes that are not shown: those that stay at a value, and those of which the largest
+    /// error is shown.
+    pub(super) fixed: Vec<usize>,
+    pub(super) over: Vec<usize>,
 }
 
 impl Layout {
-    pub(super) fn new(table: &Table, sides: Sides) -> Self {
-        let shown = |axis: usize| axis == sides.x || Some(axis) == sides.y;
-        let (mut counts, mut over) = ([1; AXES], [false; AXES]);
-        for (i, axis) in table.axes.iter().enumerate().filter(|(i, _)| !shown(*i)) {
-            over[i] = moves(axis) && !Quantity::of(axis).is_of_material();
-            if over[i] {
-                counts[i] = OVER[usize::from(table.kind == Kind::Albedo)];
-            }
-        }
+    pub(super) fn new(table: &Table, Sides { x, y }: Sides) -> Self {
+        let sides = [Some(x), y];
+        let hidden = (0..table.axes.len()).filter(|&i| !sides.contains(&Some(i)));
+        let is_over =
+            |&i: &usize| moves(&table.axes[i]) && !Quantity::of(&table.axes[i]).is_of_material();
+        let (over, fixed): (Vec<usize>, Vec<usize>) = hidden.partition(is_over);
+        let mut counts = [1; AXES];
+        over.iter().for_each(|&i| counts[i] = OVER[usize::from(table.kind == Kind::Albedo)]);
         let others: usize = counts.iter().product();
         let most = (LIMIT / point_seconds(table) / others as f64) as usize;
-        let cells = |axis: usize| {
+        let wanted = |axis: usize| {
             let axis = &table.axes[axis];
-            (axis.len() - 1) as f64 * if Quantity::of(axis) == Quantity::Number { 2.0 } else { 1.0 }
+            let twice = if Quantity::of(axis) == Quantity::Number { 2.0 } else { 1.0 };
+            IN_CELL * (axis.len() - 1) as f64 * twice
         };
-        let [x, y] = [Some(sides.x), sides.y];
         let mut pixels = if y.is_some() { PIXELS } else { [ALONE, 1] };
-        let wanted = [x, y].map(|axis| axis.map_or(0.0, |axis| IN_CELL * cells(axis)));
         let mut each: [usize; 2] = std::array::from_fn(|i| {
-            (wanted[i] / pixels[i] as f64).ceil().clamp(1.0, IN_PIXEL as f64) as usize
+            let wanted = sides[i].map_or(0.0, wanted);
+            (wanted / pixels[i] as f64).ceil().clamp(1.0, IN_PIXEL as f64) as usize
         });
         let points =
             |pixels: [usize; 2], each: [usize; 2]| pixels.iter().chain(&each).product::<usize>();
@@ -118,16 +121,12 @@ impl Layout {
         while points(pixels, each) > most && pixels[0] > FEWEST {
             pixels = pixels.map(|n| if n > FEWEST { (n * 7 / 8).max(FEWEST) } else { n });
         }
-        for (i, axis) in [x, y].into_iter().enumerate() {
+        for (i, axis) in sides.into_iter().enumerate() {
             if let Some(axis) = axis {
                 counts[axis] = pixels[i] * each[i];
             }
         }
-        Self { pixels, counts, over }
-    }
-
-    pub(super) fn points(&self) -> usize {
-        self.counts.iter().product()
+        Self { sides, pixels, each, counts, fixed, over }
     }
 
     /// The number of places that share the first axis.
@@ -135,71 +134,51 @@ impl Layout {
         self.counts[1..].iter().product()
     }
 
-    /// All places, the last axis fastest: evenly spaced with both ends, one of them moved to where
-    /// the certificate has its largest error. That is the only place, or else the middle, along
-    /// axes that are not shown and have one.
-    pub(super) fn places(&self, table: &Table, spans: &[Span], sides: Sides) -> Vec<Place> {
-        let along = |axis: usize| -> Vec<f64> {
-            let count = self.counts[axis];
-            let worst = spans.get(axis).and_then(|span| span.worst(table));
-            if count == 1 {
-                return vec![worst.unwrap_or(0.5)];
-            }
-            let mut all: Vec<f64> = (0..count).map(|i| i as f64 / (count - 1) as f64).collect();
-            if let Some(worst) = worst {
-                // Within the pixel that it lies in.
-                let each = count / self.pixels_along(axis, sides);
-                let first = (worst * (count / each) as f64) as usize * each;
-                let nearest = (worst * (count - 1) as f64).round() as usize;
-                all[nearest.clamp(first, first + each - 1).min(count - 1)] = worst;
-            }
-            all
-        };
-        let mut all: Vec<Place> = vec![[0.0; AXES]];
+    /// All places with the pixels that they lie in, row by row from the low end of y; the last axis
+    /// fastest.
+    pub(super) fn places(&self, table: &Table, spans: &[Span]) -> Vec<(Place, usize)> {
+        let mut all: Vec<(Place, usize)> = vec![([0.0; AXES], 0)];
         for axis in 0..AXES {
-            let along = along(axis);
-            let with = |place: &Place, share: f64| {
-                let mut place = *place;
-                place[axis] = share;
-                place
-            };
-            all = all.iter().flat_map(|place| along.iter().map(|&x| with(place, x))).collect();
+            let worst = spans.get(axis).and_then(|span| span.worst(table));
+            let along = self.along(axis, worst);
+            all = all.into_iter().flat_map(|at| self.extended(at, axis, &along)).collect();
         }
         all
     }
 
-    /// Pixels along an axis; places where it is not shown.
-    fn pixels_along(&self, axis: usize, sides: Sides) -> usize {
-        match axis {
-            axis if axis == sides.x => self.pixels[0],
-            axis if Some(axis) == sides.y => self.pixels[1],
-            _ => self.counts[axis],
-        }
+    /// A place at each of some shares of one more axis.
+    fn extended<'a>(
+        &self,
+        (place, pixel): (Place, usize),
+        axis: usize,
+        along: &'a [f64],
+    ) -> impl Iterator<Item = (Place, usize)> + use<'a> {
+        let side = self.sides.iter().position(|side| *side == Some(axis));
+        let (each, stride) = side.map_or((1, 0), |i| (self.each[i], [1, self.pixels[0]][i]));
+        along.iter().enumerate().map(move |(i, &share)| {
+            let mut place = place;
+            place[axis] = share;
+            (place, pixel + i / each * stride)
+        })
     }
 
-    /// Of so many axes, those that are not shown: those that stay at a value, and those of which
-    /// the largest error is shown.
-    pub(super) fn others(&self, sides: Sides, axes: usize) -> [Vec<usize>; 2] {
-        let hidden: Vec<usize> =
-            (0..axes).filter(|&i| i != sides.x && Some(i) != sides.y).collect();
-        let (over, fixed) = hidden.into_iter().partition(|&i| self.over[i]);
-        [fixed, over]
-    }
-
-    /// The worst error in each pixel, row by row from the low end of y.
-    pub(super) fn reduced(&self, sides: Sides, errors: &[f64]) -> Vec<f64> {
-        let [columns, rows] = self.pixels;
-        let mut pixels = vec![0.0; columns * rows];
-        let pixel = |i: usize, axis: usize| {
-            let stride: usize = self.counts[axis + 1..].iter().product();
-            let each = self.counts[axis] / self.pixels_along(axis, sides);
-            i / stride % self.counts[axis] / each
-        };
-        for (i, &error) in errors.iter().enumerate() {
-            let row = sides.y.map_or(0, |y| pixel(i, y));
-            let into = &mut pixels[row * columns + pixel(i, sides.x)];
-            *into = worse(*into, error);
+    /// Shares of an axis, evenly spaced with both ends, one of them moved to where the certificate
+    /// has its largest error. That is the only one, or else the middle, of an axis that is not
+    /// shown and stays at a value.
+    fn along(&self, axis: usize, worst: Option<f64>) -> Vec<f64> {
+        let count = self.counts[axis];
+        if count == 1 {
+            return vec![worst.unwrap_or(0.5)];
         }
-        pixels
+        let mut all: Vec<f64> = (0..count).map(|i| i as f64 / (count - 1) as f64).collect();
+        if let Some(worst) = worst {
+            // Within the pixel that it lies in.
+            let side = self.sides.iter().position(|side| *side == Some(axis));
+            let each = side.map_or(1, |i| self.each[i]);
+            let first = (worst * (count / each) as f64) as usize * each;
+            let nearest = (worst * (count - 1) as f64).round() as usize;
+            all[nearest.clamp(first, first + each - 1).min(count - 1)] = worst;
+        }
+        all
     }
 }

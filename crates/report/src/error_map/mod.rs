@@ -11,8 +11,6 @@ mod normals;
 mod radial;
 mod span;
 
-use std::fmt;
-
 use microfacet_baker::bake::albedo::AlbedoError;
 use microfacet_baker::distribution::DistributionError;
 use microfacet_baker::progress::Stage;
@@ -57,61 +55,26 @@ impl ErrorMap {
 }
 
 /// Why the errors of a table were not measured.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum Unmeasured {
     /// The table has one value, or none of its axes is of a known quantity.
+    #[error("it has no axis along which errors could change")]
     NoAxes,
     /// A table that is read together with it is missing.
+    #[error("the set lacks {0}, which is read together with it")]
     NoTable(String),
     /// The distribution is not known by its name alone.
-    Distribution(DistributionError),
+    #[error(transparent)]
+    Distribution(#[from] DistributionError),
     /// The set does not make the lobe.
-    Material(MaterialError),
+    #[error(transparent)]
+    Material(#[from] MaterialError),
     /// The tables do not make a set.
-    Load(LoadError),
+    #[error(transparent)]
+    Load(#[from] LoadError),
     /// The model has no such albedo.
-    Albedo(AlbedoError),
-}
-
-impl fmt::Display for Unmeasured {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoAxes => write!(f, "it has no axis along which errors could change"),
-            Self::NoTable(what) => {
-                write!(f, "the set lacks {what}, which is read together with it")
-            }
-            Self::Distribution(why) => write!(f, "{why}"),
-            Self::Material(why) => write!(f, "{why}"),
-            Self::Load(why) => write!(f, "{why}"),
-            Self::Albedo(why) => write!(f, "{why}"),
-        }
-    }
-}
-
-impl std::error::Error for Unmeasured {}
-
-impl From<DistributionError> for Unmeasured {
-    fn from(why: DistributionError) -> Self {
-        Self::Distribution(why)
-    }
-}
-
-impl From<MaterialError> for Unmeasured {
-    fn from(why: MaterialError) -> Self {
-        Self::Material(why)
-    }
-}
-
-impl From<LoadError> for Unmeasured {
-    fn from(why: LoadError) -> Self {
-        Self::Load(why)
-    }
-}
-
-impl From<AlbedoError> for Unmeasured {
-    fn from(why: AlbedoError) -> Self {
-        Self::Albedo(why)
-    }
+    #[error(transparent)]
+    Albedo(#[from] AlbedoError),
 }
 
 /// The errors of one kind of tables.
@@ -137,21 +100,23 @@ pub fn measure(
     let ruler = ruler(set, table)?;
     let spans = ruler.spans();
     let layout = Layout::new(table, sides);
-    let places = layout.places(table, spans, sides);
+    let (places, pixels): (Vec<Place>, Vec<usize>) =
+        layout.places(table, spans).into_iter().unzip();
     stage.split(places.len());
-    let errors = ruler.errors(&places, layout.run(), stage)?;
+    let mut errors = vec![0.0; layout.pixels.iter().product()];
+    for (pixel, error) in pixels.into_iter().zip(ruler.errors(&places, layout.run(), stage)?) {
+        errors[pixel] = worse(errors[pixel], error);
+    }
     let worst = |axis: usize| spans[axis].worst(table);
     let y = sides.y.map_or(Some(0.5), worst);
-    let [mut fixed, over]: [Vec<usize>; 2] = layout.others(sides, spans.len());
     // An axis of one value says nothing of the map.
-    fixed.retain(|&i| table.axes[i].nodes.len() > 1);
-    let place = places.first().copied().unwrap_or_default();
+    let fixed = layout.fixed.iter().filter(|&&i| table.axes[i].nodes.len() > 1);
     Ok(ErrorMap {
         columns: layout.pixels[0],
-        errors: layout.reduced(sides, &errors),
+        errors,
         points: places.len(),
-        fixed: fixed.iter().map(|&i| (spans[i].quantity, spans[i].value(place[i]))).collect(),
-        over: over.iter().map(|&i| spans[i].quantity).collect(),
+        fixed: fixed.map(|&i| (spans[i].quantity, spans[i].value(places[0][i]))).collect(),
+        over: layout.over.iter().map(|&i| spans[i].quantity).collect(),
         worst: worst(sides.x).zip(y).map(|(x, y)| [x, y]),
         x: spans[sides.x].clone(),
         y: sides.y.map(|y| spans[y].clone()),
@@ -161,8 +126,7 @@ pub fn measure(
 fn ruler<'a>(set: &'a Tables, table: &'a Table) -> Result<Box<dyn Ruler + 'a>, Unmeasured> {
     use microfacet_tables::Kind;
     Ok(match table.kind {
-        Kind::Albedo => Box::new(albedo::Directional::new(table)?),
-        Kind::AlbedoAverage => Box::new(albedo::Average::new(set, table)?),
+        Kind::Albedo | Kind::AlbedoAverage => Box::new(albedo::Albedos::new(set, table)?),
         Kind::Shadowing
         | Kind::VisibleSlope
         | Kind::VisibleSlopePeeled

@@ -1,6 +1,6 @@
 //! Errors of tables of masking and of visible normals.
 
-use microfacet_baker::certify::certificate::{Ruler, cotangent, number, view};
+use microfacet_baker::certify::certificate::{Ruler, cotangent, view};
 use microfacet_baker::progress::Stage;
 use microfacet_core::shape::{gamma_of_s, s_of_gamma};
 use microfacet_sampler::Tables;
@@ -30,10 +30,7 @@ impl Normals {
                     gamma_of_s(shapes.s(shapes.place(ascending(share), worst)))
                 })
             }
-            Quantity::Number => {
-                let half = (axis.nodes.len() - 1) as f64;
-                Span::new(Quantity::Number, move |share| number(2.0 * half * share, half).into())
-            }
+            Quantity::Number => Span::of_numbers(axis),
             other => {
                 let axis = axis.clone();
                 Span::new(other, move |share| cotangent(&axis, worst, share))
@@ -51,30 +48,25 @@ impl super::Ruler for Normals {
 
     fn errors(&self, places: &[Place], run: usize, stage: &Stage) -> Result<Vec<f64>, Unmeasured> {
         let ruler = ruler(&self.set);
-        let axis = |quantity: Quantity| {
-            self.spans
-                .iter()
-                .position(|span| span.quantity == quantity)
-                .map(|i| (i, &self.spans[i]))
-        };
-        let (cotangent, number) = (axis(Quantity::Cotangent), axis(Quantity::Number));
-        let at = |place: &Place, axis: Option<(usize, &Span)>| {
-            axis.map_or(0.5, |(i, span)| span.value(place[i]))
+        let at = |place: &Place, quantity: Quantity| {
+            let mut along = self.spans.iter().zip(place);
+            along
+                .find(|(span, _)| span.quantity == quantity)
+                .map_or(0.5, |(span, x)| span.value(*x))
         };
         let of_shape = |places: &[Place]| {
             let share = ascending(places[0][0]);
             let lobe = ruler.lobe(ruler.shapes.place(share, self.worst))?;
             let error = |place: &Place| {
-                let u = at(place, number) as f32;
-                ruler.error_at(&lobe, || view(at(place, cotangent)), u)
+                let u = at(place, Quantity::Number) as f32;
+                ruler.error_at(&lobe, || view(at(place, Quantity::Cotangent)), u)
             };
             let errors: Vec<f64> = places.par_iter().map(error).collect();
             stage.steps(places.len());
             Ok(errors)
         };
-        let errors =
-            places.par_chunks(run).map(of_shape).collect::<Result<Vec<_>, Unmeasured>>()?;
-        Ok(errors.concat())
+        let errors: Result<Vec<_>, Unmeasured> = places.par_chunks(run).map(of_shape).collect();
+        Ok(errors?.concat())
     }
 }
 

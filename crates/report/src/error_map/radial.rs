@@ -1,6 +1,6 @@
 //! Errors of the tables of a distribution outside the family.
 
-use microfacet_baker::certify::certificate::{cotangent, number};
+use microfacet_baker::certify::certificate::cotangent;
 use microfacet_baker::certify::radial::{Ruler, read};
 use microfacet_baker::distribution::Named;
 use microfacet_baker::progress::Stage;
@@ -31,10 +31,7 @@ impl<'a> Radial<'a> {
             of_label.ok_or_else(|| Unmeasured::NoTable(format!("a material of `{label}`")))?;
         let lobe = set.material(&entry.name)?;
         let span = |axis: &microfacet_tables::Axis| match Quantity::of(axis) {
-            Quantity::Number => {
-                let half = (axis.nodes.len() - 1) as f64;
-                Span::new(Quantity::Number, move |share| number(2.0 * half * share, half).into())
-            }
+            Quantity::Number => Span::of_numbers(axis),
             other => {
                 let (axis, part) = (axis.clone(), read(table.kind, axis));
                 // Without a γ axis s is 1.

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use microfacet_baker::certify::certificate::number;
 use microfacet_core::shape::gamma_of_s;
 use microfacet_tables::{Axis, Coordinate, Mapping, Table};
 
@@ -78,6 +79,12 @@ const SAME: f64 = 1e-6;
 impl Span {
     pub(crate) fn new(quantity: Quantity, at: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
         Self { quantity, at: Arc::new(at) }
+    }
+
+    /// Random numbers along an axis of a table that is mirrored at 1/2.
+    pub(super) fn of_numbers(axis: &Axis) -> Self {
+        let half = (axis.nodes.len() - 1) as f64;
+        Self::new(Quantity::Number, move |share| number(2.0 * half * share, half).into())
     }
 
     /// The value at a share in [0, 1] of the axis.

@@ -5,7 +5,7 @@ use microfacet_tables::Table;
 use super::super::drawing::SIZE;
 use super::{ticks, words};
 use crate::error_map::{ErrorMap, Span};
-use crate::plot::{Axis, Bar, Curve, Dash, Figure, HeatMap, Key, Mark, Method, Panel};
+use crate::plot::{Axis, Curve, Drawing, Figure, HeatMap, Key, Mark, Method, Panel};
 
 /// The low end of the scale: about the rounding of single precision.
 const LOW: f64 = 1e-7;
@@ -21,61 +21,39 @@ pub(super) fn scale(largest: impl Iterator<Item = f64>) -> Axis {
     Axis::log(LABEL, LOW, decade.min(f64::MAX))
 }
 
-pub(super) fn bar(scale: &Axis) -> String {
-    Bar { scale: scale.clone(), width: 380.0 }.inline_svg("the scale of the errors")
-}
-
 /// The map; of a table with one axis, a curve.
 pub(super) fn drawn(table: &Table, map: &ErrorMap, scale: &Axis) -> String {
-    let label = words::label(table, map);
-    match &map.y {
-        Some(y) => heat(map, y, scale, &label),
-        None => curve(map, scale, &label),
-    }
-}
-
-fn axis(span: &Span) -> Axis {
-    Axis::marked(words::axis(span.quantity), ticks::of(span))
-}
-
-fn heat(map: &ErrorMap, y: &Span, scale: &Axis, label: &str) -> String {
-    let map = HeatMap {
-        x: axis(&map.x),
-        y: axis(y),
-        columns: map.columns,
-        values: map.errors.clone(),
-        scale: scale.clone(),
-        ring: map.worst,
-        size: SIZE,
+    let axis = |span: &Span| Axis::marked(words::axis(span.quantity), ticks::of(span));
+    let drawing = match &map.y {
+        Some(y) => HeatMap {
+            x: axis(&map.x),
+            y: axis(y),
+            columns: map.columns,
+            values: map.errors.clone(),
+            scale: scale.clone(),
+            ring: map.worst,
+            size: SIZE,
+        }
+        .drawing(),
+        None => curve(map, axis(&map.x), scale.clone().coarse()),
     };
-    map.inline_svg(label).expect("whole rows")
+    drawing.inline_svg(&words::label(table, map))
 }
 
-fn curve(map: &ErrorMap, scale: &Axis, label: &str) -> String {
+fn curve(map: &ErrorMap, x: Axis, y: Axis) -> Drawing {
     let key = Key::Method(Method::Table);
     let last = (map.columns - 1).max(1) as f64;
     // What is smaller than the scale's low end is rounding.
-    let error = |x: f64| x.max(LOW);
-    let points = map
-        .errors
-        .iter()
-        .enumerate()
-        .map(|(i, &x)| (i as f64 / last, if x.is_nan() { x } else { error(x) }));
-    let points: Vec<(f64, f64)> = points.collect();
+    let error = |x: f64| if x < LOW { LOW } else { x };
+    let points = map.errors.iter().enumerate().map(|(i, &x)| (i as f64 / last, error(x)));
+    let curve = Curve::new(key, "", points);
     let ring = |[x, _]: [f64; 2]| {
-        let near = points[(x * last).round() as usize].1;
+        let near = curve.points[(x * last).round() as usize].1;
         Mark { key, name: String::new(), at: (x, near), filled: false }
     };
     let marks = map.worst.map(ring).into_iter().filter(|mark| !mark.at.1.is_nan()).collect();
-    let curve = Curve { key, name: String::new(), dash: Dash::Solid, points };
-    let panel = Panel {
-        title: String::new(),
-        x: axis(&map.x),
-        y: scale.clone().coarse(),
-        curves: vec![curve],
-        marks,
-    };
-    Figure { panels: vec![panel], columns: 1, panel: SIZE }.inline_svg(label)
+    let panel = Panel { marks, ..Panel::new("", x, y, [curve]) };
+    Figure { panels: vec![panel], columns: 1, panel: SIZE }.drawing()
 }
 
 #[test]

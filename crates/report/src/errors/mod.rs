@@ -1,6 +1,5 @@
 //! Where the errors of tables are: heat maps over their axes, of errors measured anew.
 
-mod chosen;
 mod drawing;
 mod ticks;
 mod words;
@@ -12,13 +11,46 @@ use microfacet_baker::progress::Meter;
 use microfacet_sampler::Tables;
 use microfacet_tables::Table;
 
+use super::drawing::SIZE;
 use super::{ReportError, Source};
 use crate::error_map;
-use crate::error_map::{ErrorMap, Sides, Unmeasured, measure};
-use chosen::Chosen;
+use crate::error_map::{ErrorMap, Sides, Unmeasured, measure, sides};
+use crate::plot::{Axis, bar};
 
 /// Most tables without a map whose certificates are said in words.
 const IN_WORDS: usize = 12;
+
+/// Most maps of a page.
+const MOST: usize = 12;
+
+/// The maps of a page.
+struct Chosen<'a> {
+    /// Tables and axes, in the order of the set.
+    maps: Vec<(&'a Table, Sides)>,
+    /// Maps that there is no room for.
+    left_out: usize,
+    /// Tables without an axis to show.
+    single: Vec<&'a Table>,
+}
+
+impl<'a> Chosen<'a> {
+    /// The first map of each table before the second of any, those of large errors before others.
+    fn of(set: &'a Tables) -> Self {
+        let tables = set.tables();
+        let mut all: Vec<(usize, usize, Sides)> = Vec::new();
+        for (i, table) in tables.iter().enumerate() {
+            all.extend(sides(table).into_iter().enumerate().map(|(nth, sides)| (nth, i, sides)));
+        }
+        let single = tables.iter().filter(|table| sides(table).is_empty()).collect();
+        let error = |i: usize| tables[i].certificate.worst();
+        all.sort_by(|a, b| a.0.cmp(&b.0).then(error(b.1).total_cmp(&error(a.1))));
+        let left_out = all.len().saturating_sub(MOST);
+        all.truncate(MOST);
+        all.sort_by_key(|&(nth, i, _)| (i, nth));
+        let maps = all.into_iter().map(|(_, i, sides)| (&tables[i], sides)).collect();
+        Self { maps, left_out, single }
+    }
+}
 
 /// The estimated seconds of [`section`] on the current threads.
 pub(super) fn seconds(set: &Tables) -> f64 {
@@ -57,7 +89,7 @@ pub(super) fn section(source: &Source, meter: &Meter) -> Result<Markup, ReportEr
                 "drawn, and of the share of light in an albedo. Each pixel is the largest of the "
                 "errors measured in it; black is about the rounding of single precision."
             }
-            div class="scale" style="max-width: 24rem" { (PreEscaped(drawing::bar(&scale))) }
+            div class="scale" style="max-width: 24rem" { (PreEscaped(bar(&scale, SIZE[0]).inline_svg("the scale of the errors"))) }
             div class="figures" {
                 @for (table, map) in drawn() { (figure(table, map, &scale)) }
             }
@@ -84,7 +116,7 @@ pub(super) fn section(source: &Source, meter: &Meter) -> Result<Markup, ReportEr
     })
 }
 
-fn figure(table: &Table, map: &ErrorMap, scale: &crate::plot::Axis) -> Markup {
+fn figure(table: &Table, map: &ErrorMap, scale: &Axis) -> Markup {
     html! {
         figure class="map" {
             (PreEscaped(drawing::drawn(table, map, scale)))

@@ -38,8 +38,8 @@ impl Axis {
     /// # Panics
     /// Unless `0 < low < high`, both finite.
     pub fn log(label: impl Into<String>, low: f64, high: f64) -> Self {
-        assert!(0.0 < low && low < high && high.is_finite(), "a range of {low} to {high}");
-        Self { label: label.into(), low, high, log: true, marks: Vec::new(), is_fine: true }
+        assert!(0.0 < low, "a range of {low} to {high}");
+        Self { log: true, ..Self::linear(label, low, high) }
     }
 
     /// The same without ticks between the numbers, for a small drawing.

@@ -1,10 +1,9 @@
 //! A quantity over two axes in false colours, and the bar that says what these mean.
 
-use super::canvas::{Anchor, At, Canvas, Shape};
-use super::frame::Frame;
+use super::Axis;
+use super::drawing::{Anchor, At, Drawing, circle};
 use super::ink::{BLACK, Color, Dash, NOT_A_NUMBER, false_color};
-use super::panel::{self, BARE, BELOW, LEFT, RIGHT};
-use super::{Axis, PlotError, svg};
+use super::panel::{self, BARE, Frame, LETTERS, NUMBERS};
 
 /// Numbers in false colours over two axes.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,73 +25,42 @@ pub struct HeatMap {
     pub size: [f64; 2],
 }
 
-/// The bar of a scale of false colours, with its numbers.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Bar {
-    /// What colours mean.
-    pub scale: Axis,
-    /// Width with the numbers that stand over at its ends, in pixels of the page.
-    pub width: f64,
-}
-
 /// Shades that maps and their bars are drawn in: so few take less bytes, and can be told apart.
 const SHADES: usize = 24;
-/// The ring: its radius, its sides, and the width of its line and of the dark one under it. Both
-/// colours stay in light and dark, for so do those beneath.
+/// The ring: its radius, and the width of its line and of the dark one under it. Both colours stay
+/// in light and dark, for so do those beneath.
 const RADIUS: f64 = 7.0;
-const SIDES: u32 = 20;
 const RING: [(f64, Color); 2] = [(4.5, [24, 24, 24]), (2.0, [250, 250, 250])];
 
-/// Numbers and words of a bar, its height, and the room of a number.
-const NUMBERS: f64 = 11.0;
-const LETTERS: f64 = 12.0;
+/// The height of a bar, and the room of a number.
 const HEIGHT: f64 = 14.0;
 const ROOM: f64 = 62.0;
 
 impl HeatMap {
-    /// As SVG, without references to anything outside it.
+    /// Draws it.
     ///
-    /// # Errors
-    /// [`PlotError::Drawing`] for values that are not whole rows.
-    pub fn svg(&self) -> Result<String, PlotError> {
-        Ok(svg::write(&self.page()?))
-    }
-
-    /// As an element of an HTML page, as [`Figure::inline_svg`](super::Figure::inline_svg).
-    ///
-    /// # Errors
-    /// As [`svg`](Self::svg).
-    pub fn inline_svg(&self, label: &str) -> Result<String, PlotError> {
-        Ok(svg::write_inline(&self.page()?, label))
-    }
-
-    fn page(&self) -> Result<Canvas, PlotError> {
+    /// # Panics
+    /// For values that are not whole rows.
+    pub fn drawing(&self) -> Drawing {
         let Self { columns, values, size, .. } = self;
-        if *columns == 0 || values.is_empty() || !values.len().is_multiple_of(*columns) {
-            let why = format!("{} pixels in rows of {columns}", values.len());
-            return Err(PlotError::Drawing(why));
-        }
-        let mut canvas = Canvas { size: *size, shapes: Vec::new() };
-        let frame = Frame {
-            left: LEFT,
-            top: BARE,
-            width: size[0] - LEFT - RIGHT,
-            height: size[1] - BARE - BELOW,
-        };
+        assert!(
+            !values.is_empty() && values.len().is_multiple_of(*columns),
+            "{} pixels in rows of {columns}",
+            values.len()
+        );
+        let mut drawing = Drawing::new(*size);
+        let frame = Frame::within([0.0; 2], *size, BARE);
         // Images begin at the top.
         let rows = values.chunks(*columns).rev();
         let pixels = rows.flatten().map(|&x| self.color(x)).collect();
-        canvas.shapes.push(Shape::Image {
-            corner: frame.at([0.0, 1.0]),
-            size: [frame.width, frame.height],
-            columns: *columns,
-            pixels,
-        });
-        panel::axes(&mut canvas, [&self.x, &self.y], &frame, false);
+        drawing.image(frame.at([0.0, 1.0]), [frame.width, frame.height], *columns, pixels);
+        panel::axes(&mut drawing, [&self.x, &self.y], &frame, false);
         if let Some(place) = self.ring {
-            ring(&mut canvas, frame.at(place));
+            for (width, color) in RING {
+                drawing.line(circle(frame.at(place), RADIUS), color, width, Dash::Solid);
+            }
         }
-        Ok(canvas)
+        drawing
     }
 
     fn color(&self, x: f64) -> Color {
@@ -100,45 +68,33 @@ impl HeatMap {
     }
 }
 
-impl Bar {
-    /// As SVG, without references to anything outside it.
-    pub fn svg(&self) -> String {
-        svg::write(&self.page())
-    }
-
-    /// As an element of an HTML page, as [`Figure::inline_svg`](super::Figure::inline_svg).
-    pub fn inline_svg(&self, label: &str) -> String {
-        svg::write_inline(&self.page(), label)
-    }
-
-    fn page(&self) -> Canvas {
-        let aside = 0.5 * ROOM;
-        let mut canvas = Canvas { size: [self.width, HEIGHT + 44.0], shapes: Vec::new() };
-        bar(&mut canvas, &self.scale, [aside, 2.0], [self.width - 2.0 * aside, HEIGHT], SHADES);
-        canvas
-    }
+/// The bar of the scale of maps, with its numbers, which stand over a little at its ends; as wide
+/// as this in pixels of the page.
+pub fn bar(scale: &Axis, width: f64) -> Drawing {
+    let mut drawing = Drawing::new([width, HEIGHT + 44.0]);
+    draw_bar(&mut drawing, scale, [0.5 * ROOM, 2.0], [width - ROOM, HEIGHT], SHADES);
+    drawing
 }
 
 /// Draws the bar of a scale in so many shades, with its numbers and its label beneath.
-pub(super) fn bar(
-    canvas: &mut Canvas,
+pub(super) fn draw_bar(
+    drawing: &mut Drawing,
     scale: &Axis,
     [left, top]: At,
     [width, height]: At,
     shades: usize,
 ) {
     let pixels = (0..shades).map(|i| shade((i as f64 + 0.5) / shades as f64, shades)).collect();
-    let (corner, size) = ([left, top], [width, height]);
-    canvas.shapes.push(Shape::Image { corner, size, columns: shades, pixels });
+    drawing.image([left, top], [width, height], shades, pixels);
     let bottom = top + height;
     for tick in scale.ticks((width / ROOM) as usize) {
         let x = left + width * tick.at;
         let Some(label) = tick.label else { continue };
-        canvas.line(vec![[x, bottom], [x, bottom + 4.0]], BLACK, 1.0, Dash::Solid);
-        canvas.text([x, bottom + NUMBERS + 5.0], &label, NUMBERS, Anchor::Middle, BLACK);
+        drawing.line(vec![[x, bottom], [x, bottom + 4.0]], BLACK, 1.0, Dash::Solid);
+        drawing.text([x, bottom + NUMBERS + 5.0], &label, NUMBERS, Anchor::Middle, BLACK);
     }
     let at = [left + 0.5 * width, bottom + 36.0];
-    canvas.text(at, &scale.label, LETTERS, Anchor::Middle, BLACK);
+    drawing.text(at, &scale.label, LETTERS, Anchor::Middle, BLACK);
 }
 
 /// The false colour of the middle of the shade that a fraction of the scale falls into.
@@ -148,39 +104,20 @@ fn shade(fraction: f64, shades: usize) -> Color {
     false_color((of + 0.5) / shades)
 }
 
-fn ring(canvas: &mut Canvas, [x, y]: At) {
-    let corner = |i: u32| {
-        let (s, c) = libm::sincos(f64::from(i) * std::f64::consts::TAU / f64::from(SIDES));
-        [x + RADIUS * c, y + RADIUS * s]
-    };
-    for (width, color) in RING {
-        canvas.line((0..=SIDES).map(corner).collect(), color, width, Dash::Solid);
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::panel::{BELOW, LEFT, RIGHT};
     use super::*;
-    use crate::plot::png;
 
     fn map(values: Vec<f64>, ring: Option<[f64; 2]>) -> HeatMap {
         let axis = |label: &str| Axis::marked(label, [(0.0, "1".to_owned()), (1.0, "∞".into())]);
-        let scale = Axis::log("error", 1e-6, 1e-2);
-        HeatMap {
-            x: axis("γ"),
-            y: axis("σ"),
-            columns: 2,
-            values,
-            scale,
-            ring,
-            size: [400.0, 300.0],
-        }
+        let (x, y, scale) = (axis("γ"), axis("σ"), Axis::log("error", 1e-6, 1e-2));
+        HeatMap { x, y, columns: 2, values, scale, ring, size: [400.0, 300.0] }
     }
 
     /// The colour at fractions of the axes.
     fn at(map: &HeatMap, [x, y]: [f64; 2]) -> Color {
-        let image = png::write(&map.page().unwrap()).unwrap();
-        let image = image::load_from_memory(&image).unwrap().to_rgb8();
+        let image = image::load_from_memory(&map.drawing().png().unwrap()).unwrap().to_rgb8();
         let [width, height] = [400.0 - LEFT - RIGHT, 300.0 - BARE - BELOW];
         let place = [LEFT + x * width, BARE + (1.0 - y) * height];
         let [x, y] = place.map(|x| (2.0 * x) as u32);
@@ -213,14 +150,14 @@ mod tests {
     }
 
     #[test]
+    #[should_panic = "3 pixels in rows of 2"]
     fn rows_that_are_not_whole_are_refused() {
-        assert!(map(vec![1.0; 3], None).svg().unwrap_err().to_string().contains("3 pixels"));
-        assert!(map(Vec::new(), None).svg().is_err());
+        map(vec![1.0; 3], None).drawing();
     }
 
     #[test]
     fn a_bar_has_the_numbers_of_its_scale() {
-        let drawn = Bar { scale: Axis::log("error", 1e-6, 1e-2), width: 400.0 }.svg();
+        let drawn = bar(&Axis::log("error", 1e-6, 1e-2), 400.0).svg();
         let document = roxmltree::Document::parse(&drawn).unwrap();
         let texts: Vec<&str> = document.descendants().filter_map(|node| node.text()).collect();
         for word in ["10⁻⁶", "10⁻²", "error"] {

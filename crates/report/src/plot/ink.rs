@@ -60,6 +60,17 @@ pub enum Dash {
     Dotted,
 }
 
+impl Dash {
+    /// Lengths of dashes and gaps in turn, in widths of the line; none if there are no gaps.
+    pub(super) fn lengths(self) -> &'static [f64] {
+        match self {
+            Self::Solid => &[],
+            Self::Dashed => &[4.0, 2.5],
+            Self::Dotted => &[1.2, 1.8],
+        }
+    }
+}
+
 // The palette of Okabe and Ito 2008, made for all kinds of colour vision, with its yellow darkened
 // for white paper; and two of Tol's.
 const BLUE: Color = [0, 114, 178];
@@ -188,17 +199,18 @@ mod tests {
 
     #[test]
     fn colours_for_dark_paper_stand_out_from_it_and_differ() {
+        use Method::*;
         let methods = [
-            Method::Table,
-            Method::Hypergeometric,
-            Method::Integer,
-            Method::HalfInteger,
-            Method::Rational,
-            Method::Ggx,
-            Method::Beckmann,
-            Method::Inversion,
-            Method::Rejection,
-            Method::Other,
+            Table,
+            Hypergeometric,
+            Integer,
+            HalfInteger,
+            Rational,
+            Ggx,
+            Beckmann,
+            Inversion,
+            Rejection,
+            Other,
         ];
         let steps = || (0..=40).map(|i| f64::from(i) / 40.0);
         let gammas = steps().map(|x| Key::Gamma(1.5 + libm::exp10(4.0 * x - 2.0)));

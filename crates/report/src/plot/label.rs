@@ -1,8 +1,8 @@
-//! Names beside points, where they hide nothing.
+//! Names beside points, where they hide little.
 
-use super::canvas::{Anchor, At, Canvas};
-use super::frame::{DOT, Frame};
+use super::drawing::{Anchor, At, Drawing};
 use super::ink::{Color, Dash};
+use super::panel::{DOT, Frame};
 use super::text;
 
 /// Size of the letters and of the space that a line of them takes.
@@ -10,40 +10,37 @@ const LETTERS: f64 = 10.5;
 const LINE: f64 = 12.0;
 /// Gap between a point and its name.
 const GAP: f64 = 3.0;
-
-/// A rectangle of the page in which nothing else should be drawn: [left, right], [top, bottom].
-#[derive(Clone, Copy, Debug)]
-struct Taken {
-    x: [f64; 2],
-    y: [f64; 2],
-}
-
-impl Taken {
-    fn meets(&self, other: &Self) -> bool {
-        let overlap = |a: [f64; 2], b: [f64; 2]| a[0] < b[1] && b[0] < a[1];
-        overlap(self.x, other.x) && overlap(self.y, other.y)
-    }
-}
-
 /// How far a name may stand to the side of its place beside the point.
 const ASIDE: [f64; 4] = [0.0, 16.0, 40.0, 80.0];
 /// Half the side of the squares that stand for a line, and how far apart they are.
 const PEN: f64 = 1.5;
 const STRIDE: f64 = 3.0;
-
-/// What it costs, in pixels of distance from the point, to hide a name or a point, a part of a
-/// line, or to lead a part of a line over a name.
+/// What it costs, in pixels of distance from the point, to hide a name or a point or to leave the
+/// panel, and to hide a part of a line.
 const HIDES: f64 = 4000.0;
 const CROSSES: f64 = 8.0;
-const STRIKES: f64 = 60.0;
-/// How often each name is placed anew, among all others.
-const SWEEPS: usize = 4;
 
-/// What a panel holds, so that names are written where there is room.
-struct Ground<'a> {
-    frame: &'a Frame,
-    dots: Vec<Taken>,
-    curves: Vec<Taken>,
+/// A rectangle: [left, right], [top, bottom].
+#[derive(Clone, Copy, Debug)]
+struct Area {
+    x: [f64; 2],
+    y: [f64; 2],
+}
+
+impl Area {
+    fn about([x, y]: At, half: f64) -> Self {
+        Self { x: [x - half, x + half], y: [y - half, y + half] }
+    }
+
+    fn meets(&self, other: &Self) -> bool {
+        let overlap = |a: [f64; 2], b: [f64; 2]| a[0] < b[1] && b[0] < a[1];
+        overlap(self.x, other.x) && overlap(self.y, other.y)
+    }
+
+    fn is_in(&self, frame: &Frame) -> bool {
+        let inside = |[from, to]: [f64; 2], start, length| start <= from && to <= start + length;
+        inside(self.x, frame.left, frame.width) && inside(self.y, frame.top, frame.height)
+    }
 }
 
 /// A place for a name.
@@ -51,104 +48,64 @@ struct Candidate {
     right: bool,
     /// Where the name starts, or ends if it is to the left; at the middle of its height.
     start: At,
-    place: Taken,
-    /// The line from the point, if the name is not beside it.
-    lead: Vec<Taken>,
+    area: Area,
+    is_beside: bool,
 }
 
-/// Writes the names of points beside them, as near as they hide little; thin lines lead to those
-/// that are farther away. `curves` are what else is drawn.
+/// Writes the names of points beside them one after the other, each as near as it hides little;
+/// thin lines lead to those that are farther away. `curves` are what else is drawn.
 pub(super) fn write(
-    canvas: &mut Canvas,
+    drawing: &mut Drawing,
     frame: &Frame,
     curves: &[Vec<At>],
     points: &[(At, &str, Color)],
 ) {
+    // What names must not hide, and what they better do not.
+    let mut words: Vec<Area> = points.iter().map(|&(at, ..)| Area::about(at, DOT)).collect();
     let segments = curves.iter().flat_map(|curve| curve.windows(2));
-    let ground = Ground {
-        frame,
-        dots: points.iter().map(|&(at, ..)| square(at, DOT)).collect(),
-        curves: segments.flat_map(|ends| line(ends[0], ends[1])).collect(),
-    };
-    let mut placed: Vec<Option<Candidate>> = points.iter().map(|_| None).collect();
-    for _ in 0..SWEEPS {
-        for (i, &(at, name, _)) in points.iter().enumerate() {
-            placed[i] = None;
-            let others: Vec<&Candidate> = placed.iter().flatten().collect();
-            let cost = |candidate: &Candidate| ground.cost(at, candidate, &others);
-            let mut best = (f64::INFINITY, None);
-            for candidate in candidates(at, text::width(name, LETTERS)) {
-                let cost = cost(&candidate);
-                if cost < best.0 {
-                    best = (cost, Some(candidate));
-                }
-            }
-            placed[i] = best.1;
+    let mut lines: Vec<Area> = segments.flat_map(|ends| squares(ends[0], ends[1])).collect();
+    for &([x, y], name, color) in points.iter().filter(|(_, name, _)| !name.is_empty()) {
+        let cost = |at: &Candidate| {
+            let hidden = words.iter().filter(|other| other.meets(&at.area)).count();
+            let crossed = lines.iter().filter(|other| other.meets(&at.area)).count();
+            let outside = usize::from(!at.area.is_in(frame));
+            (at.start[0] - x).hypot(at.start[1] - y)
+                + HIDES * (hidden + outside) as f64
+                + CROSSES * crossed as f64
+        };
+        let all = candidates([x, y], text::width(name, LETTERS));
+        let best = all.min_by(|a, b| cost(a).total_cmp(&cost(b))).expect("some places");
+        let (anchor, near) = if best.right { (Anchor::Start, -1.0) } else { (Anchor::End, 1.0) };
+        if !best.is_beside {
+            let end = [best.start[0] + near, best.start[1]];
+            drawing.line(vec![[x, y], end], color, 0.6, Dash::Solid);
+            lines.extend(squares([x, y], end));
         }
-    }
-    for (&(from, name, color), place) in points.iter().zip(placed) {
-        let Some(Candidate { right, start: [x, y], lead, .. }) = place else { continue };
-        if !lead.is_empty() {
-            let near = if right { x - 1.0 } else { x + 1.0 };
-            canvas.line(vec![from, [near, y]], color, 0.6, Dash::Solid);
-        }
-        let anchor = if right { Anchor::Start } else { Anchor::End };
-        canvas.text([x, y + 0.36 * LETTERS], name, LETTERS, anchor, color);
-    }
-}
-
-impl Ground<'_> {
-    fn cost(&self, [x, y]: At, candidate: &Candidate, others: &[&Candidate]) -> f64 {
-        let Candidate { start, place, lead, .. } = candidate;
-        let names = || others.iter().map(|other| &other.place);
-        let leads = others.iter().flat_map(|other| &other.lead);
-        let hidden = names().chain(&self.dots).filter(|other| other.meets(place)).count();
-        let crossed = self.curves.iter().chain(leads).filter(|o| o.meets(place)).count();
-        let struck = lead.iter().flat_map(|part| names().filter(|other| other.meets(part))).count();
-        let outside = if self.holds(place) { 0.0 } else { HIDES };
-        (start[0] - x).hypot(start[1] - y)
-            + outside
-            + HIDES * hidden as f64
-            + CROSSES * crossed as f64
-            + STRIKES * struck as f64
-    }
-
-    fn holds(&self, place: &Taken) -> bool {
-        let Frame { left, top, width, height } = *self.frame;
-        place.x[0] >= left
-            && place.x[1] <= left + width
-            && place.y[0] >= top
-            && place.y[1] <= top + height
+        words.push(best.area);
+        let baseline = [best.start[0], best.start[1] + 0.36 * LETTERS];
+        drawing.text(baseline, name, LETTERS, anchor, color);
     }
 }
 
 /// Places for a name of this width.
 fn candidates([x, y]: At, width: f64) -> impl Iterator<Item = Candidate> {
-    let at = move |right: bool, aside: f64, half_lines: i32| {
+    let at = move |half_lines: i32, aside: f64, right: bool| {
         let [gap, down] = [DOT + GAP + aside, f64::from(half_lines) * 0.5 * LINE];
         let start = if right { [x + gap, y + down] } else { [x - gap, y + down] };
         let reach = if right { [start[0], start[0] + width] } else { [start[0] - width, start[0]] };
-        let place = Taken { x: reach, y: [start[1] - 0.5 * LINE, start[1] + 0.5 * LINE] };
-        let beside = half_lines.abs() <= 1 && aside == 0.0;
-        let lead = if beside { Vec::new() } else { line([x, y], start).collect() };
-        Candidate { right, start, place, lead }
+        let area = Area { x: reach, y: [start[1] - 0.5 * LINE, start[1] + 0.5 * LINE] };
+        Candidate { right, start, area, is_beside: half_lines.abs() <= 1 && aside == 0.0 }
     };
-    let sides = move |i: i32| {
-        ASIDE.into_iter().flat_map(move |aside| [true, false].map(|r| at(r, aside, i)))
-    };
+    let sides = move |i| ASIDE.into_iter().flat_map(move |by| [true, false].map(|r| at(i, by, r)));
     (-24..=24).flat_map(sides)
 }
 
-fn square([x, y]: At, half: f64) -> Taken {
-    Taken { x: [x - half, x + half], y: [y - half, y + half] }
-}
-
 /// Squares along a line.
-fn line(from: At, to: At) -> impl Iterator<Item = Taken> {
+fn squares(from: At, to: At) -> impl Iterator<Item = Area> {
     let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
     let steps = (dx.hypot(dy) / STRIDE).ceil().max(1.0);
     (0..=steps as u32).map(move |i| {
         let part = f64::from(i) / steps;
-        square([from[0] + part * dx, from[1] + part * dy], PEN)
+        Area::about([from[0] + part * dx, from[1] + part * dy], PEN)
     })
 }

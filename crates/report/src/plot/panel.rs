@@ -1,8 +1,7 @@
-//! One panel on the page: frame, ticks, curves and labelled points.
+//! One panel of a drawing: frame, ticks, curves and labelled points.
 
-use super::canvas::{Anchor, At, Canvas, Shape};
 use super::clip::{Place, clip};
-use super::frame::{DOT, Frame};
+use super::drawing::{Anchor, At, Drawing, circle};
 use super::ink::{BLACK, Color, Dash, GRID};
 use super::{Axis, Curve, Panel, label, text};
 
@@ -16,10 +15,13 @@ pub(super) const BELOW: f64 = 50.0;
 
 /// Width of a curve.
 pub(super) const CURVE: f64 = 2.0;
+/// Radius of a point.
+pub(super) const DOT: f64 = 4.0;
 
-const TITLE: f64 = 15.0;
-const LETTERS: f64 = 12.0;
-const NUMBERS: f64 = 11.0;
+/// Sizes of letters.
+pub(super) const TITLE: f64 = 15.0;
+pub(super) const LETTERS: f64 = 12.0;
+pub(super) const NUMBERS: f64 = 11.0;
 /// Length of a tick with a number.
 const TICK: f64 = 5.0;
 /// Room of a number along x and along y.
@@ -27,101 +29,109 @@ const ROOM: At = [50.0, 34.0];
 /// Half the width, and the height, of the triangle where a curve leaves.
 const TRIANGLE: At = [5.0, 8.0];
 
-/// Draws a panel into an area of the page.
-pub(super) fn draw(canvas: &mut Canvas, panel: &Panel, corner: At, size: At) {
+/// The rectangle that the axes of a panel span.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame {
+    pub(super) left: f64,
+    pub(super) top: f64,
+    pub(super) width: f64,
+    pub(super) height: f64,
+}
+
+impl Frame {
+    /// That of an area, below so much room.
+    pub(super) fn within([left, top]: At, [width, height]: At, above: f64) -> Self {
+        Self {
+            left: left + LEFT,
+            top: top + above,
+            width: width - LEFT - RIGHT,
+            height: height - above - BELOW,
+        }
+    }
+
+    pub(super) fn at(&self, [x, y]: Place) -> At {
+        [self.left + self.width * x, self.top + self.height * (1.0 - y)]
+    }
+}
+
+/// Draws a panel into an area.
+pub(super) fn draw(drawing: &mut Drawing, panel: &Panel, corner: At, size: At) {
     let above = if panel.title.is_empty() { BARE } else { ABOVE };
-    let frame = Frame {
-        left: corner[0] + LEFT,
-        top: corner[1] + above,
-        width: size[0] - LEFT - RIGHT,
-        height: size[1] - above - BELOW,
-    };
+    let frame = Frame::within(corner, size, above);
     let middle = frame.left + 0.5 * frame.width;
-    canvas.text([middle, corner[1] + 22.0], &panel.title, TITLE, Anchor::Middle, BLACK);
-    axes(canvas, [&panel.x, &panel.y], &frame, true);
+    drawing.text([middle, corner[1] + 22.0], &panel.title, TITLE, Anchor::Middle, BLACK);
+    axes(drawing, [&panel.x, &panel.y], &frame, true);
     let curves = |dash| panel.curves.iter().filter(move |curve| curve.dash == dash);
     let mut drawn = Vec::new();
     for curve in [Dash::Solid, Dash::Dashed, Dash::Dotted].into_iter().flat_map(curves) {
-        drawn.extend(draw_curve(canvas, panel, curve, &frame));
+        drawn.extend(draw_curve(drawing, panel, curve, &frame));
     }
-    marks(canvas, panel, &frame, &drawn);
+    marks(drawing, panel, &frame, &drawn);
 }
 
 /// Draws the frame with the numbers of its axes and, if asked for, lines across at these.
-pub(super) fn axes(
-    canvas: &mut Canvas,
-    [x_axis, y_axis]: [&Axis; 2],
-    frame: &Frame,
-    has_grid: bool,
-) {
+pub(super) fn axes(drawing: &mut Drawing, axes: [&Axis; 2], frame: &Frame, has_grid: bool) {
     let rooms = [frame.width / ROOM[0], frame.height / ROOM[1]].map(|room| room as usize);
-    let (mut ticks, mut numbers) = (Vec::new(), Vec::new());
-    for tick in x_axis.ticks(rooms[0]) {
-        let [x, y] = frame.at([tick.at, 0.0]);
-        let long = if tick.label.is_some() { TICK } else { 0.5 * TICK };
-        if has_grid && tick.label.is_some() {
-            canvas.line(vec![[x, y], frame.at([tick.at, 1.0])], GRID, 1.0, Dash::Solid);
+    let (mut ticks, mut numbers, mut widest) = (Vec::new(), Vec::new(), 0.0_f64);
+    for (i, axis) in axes.into_iter().enumerate() {
+        let is_x = i == 0;
+        for tick in axis.ticks(rooms[i]) {
+            let at = |across| frame.at(if is_x { [tick.at, across] } else { [across, tick.at] });
+            let [x, y] = at(0.0);
+            let long = if tick.label.is_some() { TICK } else { 0.5 * TICK };
+            ticks.push(vec![[x, y], if is_x { [x, y + long] } else { [x - long, y] }]);
+            let Some(label) = tick.label else { continue };
+            if has_grid {
+                drawing.line(vec![[x, y], at(1.0)], GRID, 1.0, Dash::Solid);
+            }
+            numbers.push(if is_x {
+                ([x, y + TICK + NUMBERS + 2.0], label, Anchor::Middle)
+            } else {
+                widest = widest.max(text::width(&label, NUMBERS));
+                ([x - TICK - 4.0, y + 0.36 * NUMBERS], label, Anchor::End)
+            });
         }
-        ticks.push(vec![[x, y], [x, y + long]]);
-        numbers.push(([x, y + TICK + NUMBERS + 2.0], tick.label, Anchor::Middle));
-    }
-    let mut widest: f64 = 0.0;
-    for tick in y_axis.ticks(rooms[1]) {
-        let width = tick.label.as_ref().map_or(0.0, |label| text::width(label, NUMBERS));
-        widest = widest.max(width);
-        let [x, y] = frame.at([0.0, tick.at]);
-        let long = if tick.label.is_some() { TICK } else { 0.5 * TICK };
-        if has_grid && tick.label.is_some() {
-            canvas.line(vec![[x, y], frame.at([1.0, tick.at])], GRID, 1.0, Dash::Solid);
-        }
-        ticks.push(vec![[x - long, y], [x, y]]);
-        numbers.push(([x - TICK - 4.0, y + 0.36 * NUMBERS], tick.label, Anchor::End));
     }
     let corners = [[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
-    canvas.line(corners.map(|place| frame.at(place)).into(), BLACK, 1.0, Dash::Solid);
-    for tick in ticks {
-        canvas.line(tick, BLACK, 1.0, Dash::Solid);
+    for line in ticks.into_iter().chain([corners.map(|place| frame.at(place)).into()]) {
+        drawing.line(line, BLACK, 1.0, Dash::Solid);
     }
     for (at, label, anchor) in numbers {
-        if let Some(label) = label {
-            canvas.text(at, &label, NUMBERS, anchor, BLACK);
-        }
+        drawing.text(at, &label, NUMBERS, anchor, BLACK);
     }
     let [middle, bottom] = frame.at([0.5, 0.0]);
-    canvas.text([middle, bottom + 38.0], &x_axis.label, LETTERS, Anchor::Middle, BLACK);
+    drawing.text([middle, bottom + 38.0], &axes[0].label, LETTERS, Anchor::Middle, BLACK);
     let [left, half] = frame.at([0.0, 0.5]);
-    canvas.turned_text([left - TICK - 4.0 - widest - 10.0, half], &y_axis.label, LETTERS);
+    drawing.turned_text([left - TICK - 4.0 - widest - 10.0, half], &axes[1].label, LETTERS);
 }
 
-/// Draws a curve; returns its parts.
-fn draw_curve(canvas: &mut Canvas, panel: &Panel, curve: &Curve, frame: &Frame) -> Vec<Vec<At>> {
+/// Draws a curve, with triangles at the edge that point to where it went; returns its parts.
+fn draw_curve(drawing: &mut Drawing, panel: &Panel, curve: &Curve, frame: &Frame) -> Vec<Vec<At>> {
     let color = curve.key.color();
     let clipped = clip(curve.points.iter().map(|&point| panel.place(point)));
     let on_page = |run: Vec<Place>| run.into_iter().map(|place| frame.at(place)).collect();
     let runs: Vec<Vec<At>> = clipped.runs.into_iter().map(on_page).collect();
     for run in &runs {
-        canvas.line(run.clone(), color, CURVE, curve.dash);
+        drawing.line(run.clone(), color, CURVE, curve.dash);
     }
     for exit in clipped.exits {
-        leaves(canvas, frame.at(exit), exit[1] > 0.5, color);
+        let [x, y] = frame.at(exit);
+        let base = if exit[1] > 0.5 { y + TRIANGLE[1] } else { y - TRIANGLE[1] };
+        drawing.area(vec![[x, y], [x - TRIANGLE[0], base], [x + TRIANGLE[0], base]], color);
     }
     runs
 }
 
-/// A triangle at the edge that points to where the curve went.
-fn leaves(canvas: &mut Canvas, [x, y]: At, upwards: bool, color: Color) {
-    let base = if upwards { y + TRIANGLE[1] } else { y - TRIANGLE[1] };
-    let corners = vec![[x, y], [x - TRIANGLE[0], base], [x + TRIANGLE[0], base]];
-    canvas.shapes.push(Shape::Area { corners, color });
-}
-
-fn marks(canvas: &mut Canvas, panel: &Panel, frame: &Frame, curves: &[Vec<At>]) {
+fn marks(drawing: &mut Drawing, panel: &Panel, frame: &Frame, curves: &[Vec<At>]) {
     let points = panel.marks.iter().map(|mark| {
         let (center, color) = (frame.at(panel.place(mark.at)), mark.key.color());
-        let filled = mark.filled;
-        canvas.shapes.push(Shape::Circle { center, radius: DOT, color, filled });
+        if mark.filled {
+            drawing.area(circle(center, DOT), color);
+        } else {
+            drawing.line(circle(center, DOT), color, 1.0, Dash::Solid);
+        }
         (center, mark.name.as_str(), color)
     });
-    let points: Vec<_> = points.collect();
-    label::write(canvas, frame, curves, &points);
+    let points: Vec<(At, &str, Color)> = points.collect();
+    label::write(drawing, frame, curves, &points);
 }

@@ -1,6 +1,5 @@
-//! A page as PNG.
+//! A drawing as PNG.
 
-use std::collections::BTreeSet;
 use std::io::Cursor;
 
 use ab_glyph::OutlineCurve;
@@ -11,59 +10,49 @@ use tiny_skia::{
     Transform,
 };
 
-use super::canvas::{Anchor, At, Canvas, Shape};
+use super::drawing::{Anchor, At, Drawing, Shape};
 use super::ink::Color;
 use super::{PlotError, text};
 
 /// Pixels of the image along one of the page.
 pub(super) const SCALE: u32 = 2;
 
-/// So many colours are few.
-const FEW: usize = 32;
-
-/// The page as an RGB image, [`SCALE`] times its size.
-///
-/// # Errors
-/// [`PlotError::Drawing`] for a page without area, or too large.
-pub(super) fn write(canvas: &Canvas) -> Result<Vec<u8>, PlotError> {
-    let [width, height] = canvas.size.map(|x| (x * f64::from(SCALE)).ceil() as u32);
-    let mut pixmap = Pixmap::new(width, height)
-        .ok_or_else(|| PlotError::Drawing(format!("an image of {width} by {height} pixels")))?;
-    pixmap.fill(tiny_skia::Color::WHITE);
-    for shape in &canvas.shapes {
-        draw(&mut pixmap, shape);
+impl Drawing {
+    /// As PNG, with two pixels along each of the page.
+    ///
+    /// # Errors
+    /// [`PlotError::Drawing`] for a figure without panels, or larger than memory.
+    pub fn png(&self) -> Result<Vec<u8>, PlotError> {
+        let [width, height] = self.size.map(|x| (x * f64::from(SCALE)).ceil() as u32);
+        let mut pixmap = Pixmap::new(width, height)
+            .ok_or_else(|| PlotError::Drawing(format!("an image of {width} by {height} pixels")))?;
+        pixmap.fill(tiny_skia::Color::WHITE);
+        for shape in &self.shapes {
+            draw(&mut pixmap, shape);
+        }
+        // Nothing is transparent, for the paper is not.
+        let rgb: Vec<u8> = pixmap.data().chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
+        let png = encode(&rgb, [width, height], FilterType::Adaptive);
+        png.map_err(|why| PlotError::Drawing(why.to_string()))
     }
-    // Nothing is transparent, for the paper is not.
-    let rgb: Vec<u8> = pixmap.data().chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
-    encode(&rgb, [width, height]).map_err(|why| PlotError::Drawing(why.to_string()))
 }
 
-fn encode(rgb: &[u8], [width, height]: [u32; 2]) -> ImageResult<Vec<u8>> {
+fn encode(rgb: &[u8], [width, height]: [u32; 2], filter: FilterType) -> ImageResult<Vec<u8>> {
     let mut file = Cursor::new(Vec::new());
-    let encoder = if has_few_colors(rgb) {
-        // Differences of neighbours, as other filters take them, have more values than a few
-        // colours.
-        PngEncoder::new_with_quality(&mut file, CompressionType::Best, FilterType::NoFilter)
-    } else {
-        PngEncoder::new(&mut file)
-    };
-    encoder.write_image(rgb, width, height, ExtendedColorType::Rgb8)?;
+    PngEncoder::new_with_quality(&mut file, CompressionType::Best, filter).write_image(
+        rgb,
+        width,
+        height,
+        ExtendedColorType::Rgb8,
+    )?;
     Ok(file.into_inner())
 }
 
-/// Whether an image has at most [`FEW`] colours.
-fn has_few_colors(rgb: &[u8]) -> bool {
-    let mut colors = BTreeSet::new();
-    rgb.chunks_exact(3).all(|color| {
-        colors.insert(color);
-        colors.len() <= FEW
-    })
-}
-
-/// An image of whole lines of pixels, as a file by itself.
+/// An image of whole lines of pixels, as a file by itself. Most have few colours, of which the
+/// differences of neighbours, as filters take them, have more values.
 pub(super) fn of_pixels(pixels: &[Color], columns: usize) -> Vec<u8> {
     let size = [columns, pixels.len() / columns].map(|edge| edge as u32);
-    encode(pixels.as_flattened(), size).expect("whole lines, in memory")
+    encode(pixels.as_flattened(), size, FilterType::NoFilter).expect("whole lines, in memory")
 }
 
 fn draw(pixmap: &mut Pixmap, shape: &Shape) {
@@ -78,23 +67,14 @@ fn draw(pixmap: &mut Pixmap, shape: &Shape) {
                 ..Stroke::default()
             };
             // A line of one point has no path, and nothing is drawn.
-            if let Some(path) = polygon(points, false) {
+            if let Some(path) = through(points) {
                 pixmap.stroke_path(&path, &paint(*color), &stroke, page, None);
             }
         }
         Shape::Area { corners, color } => {
-            if let Some(path) = polygon(corners, true) {
+            if let Some(path) = through(corners) {
                 pixmap.fill_path(&path, &paint(*color), FillRule::Winding, page, None);
             }
-        }
-        Shape::Circle { center: [x, y], radius, color, filled } => {
-            let Some(path) = PathBuilder::from_circle(*x as f32, *y as f32, *radius as f32) else {
-                return;
-            };
-            if *filled {
-                pixmap.fill_path(&path, &paint(*color), FillRule::Winding, page, None);
-            }
-            pixmap.stroke_path(&path, &paint(*color), &Stroke::default(), page, None);
         }
         Shape::Image { corner: [x, y], size: [width, height], columns, pixels } => {
             let lines = pixels.len() / columns;
@@ -134,17 +114,15 @@ fn paint([r, g, b]: Color) -> Paint<'static> {
     paint
 }
 
-fn polygon(points: &[At], closed: bool) -> Option<Path> {
+fn through(points: &[At]) -> Option<Path> {
     let mut path = PathBuilder::new();
-    for (i, &[x, y]) in points.iter().enumerate() {
+    for (i, point) in points.iter().enumerate() {
+        let [x, y] = point.map(|x| x as f32);
         if i == 0 {
-            path.move_to(x as f32, y as f32);
+            path.move_to(x, y);
         } else {
-            path.line_to(x as f32, y as f32);
+            path.line_to(x, y);
         }
-    }
-    if closed {
-        path.close();
     }
     path.finish()
 }
@@ -152,31 +130,22 @@ fn polygon(points: &[At], closed: bool) -> Option<Path> {
 /// The outlines of a text that starts at the origin.
 fn letters(text: &str, size: f64) -> Option<Path> {
     let (em, letters) = text::outlines(text);
+    let scale = (size / em) as f32;
     let mut path = PathBuilder::new();
     for (start, curves) in letters {
-        let scale = (size / em) as f32;
         let place = |p: ab_glyph::Point| [(start * size) as f32 + p.x * scale, -p.y * scale];
         let mut last = None;
         for curve in curves {
-            let (from, to) = match &curve {
-                OutlineCurve::Line(a, b)
-                | OutlineCurve::Quad(a, _, b)
-                | OutlineCurve::Cubic(a, _, _, b) => (place(*a), place(*b)),
+            let (from, bend, to) = match curve {
+                OutlineCurve::Line(a, b) => (place(a), place(a), place(b)),
+                OutlineCurve::Quad(a, bend, b) => (place(a), place(bend), place(b)),
+                OutlineCurve::Cubic(..) => unreachable!("TrueType outlines are quadratic"),
             };
             if last != Some(from) {
                 path.move_to(from[0], from[1]);
             }
-            match curve {
-                OutlineCurve::Line(..) => path.line_to(to[0], to[1]),
-                OutlineCurve::Quad(_, c, _) => {
-                    let c = place(c);
-                    path.quad_to(c[0], c[1], to[0], to[1]);
-                }
-                OutlineCurve::Cubic(_, c, d, _) => {
-                    let (c, d) = (place(c), place(d));
-                    path.cubic_to(c[0], c[1], d[0], d[1], to[0], to[1]);
-                }
-            }
+            // A line is a curve that bends at its start.
+            path.quad_to(bend[0], bend[1], to[0], to[1]);
             last = Some(to);
         }
     }

@@ -1,8 +1,11 @@
 //! Pictures in rows and columns, in their own colours or in false ones, with a scale of these.
 
-use super::canvas::{Anchor, Canvas, Shape};
+use super::Axis;
+use super::drawing::{Anchor, Drawing};
+use super::heat::draw_bar;
 use super::ink::{BLACK, Color, false_color};
-use super::{Axis, PlotError, heat, png, svg};
+use super::panel::{LETTERS, NUMBERS, TITLE};
+use super::text;
 
 /// What a picture shows, line by line from its upper left corner.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,9 +20,7 @@ pub enum Content {
 /// A square picture with a line below it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tile {
-    /// Pixels along an edge.
-    pub edge: usize,
-    /// As many pixels as its square has.
+    /// As many pixels as a square has.
     pub content: Content,
     /// Below it.
     pub caption: String,
@@ -28,121 +29,134 @@ pub struct Tile {
 /// A sheet of pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
-    /// Above all.
-    pub title: String,
+    /// Columns that stand together, from the left: how many, and the heading above all of them.
+    pub groups: Vec<(usize, String)>,
     /// Headings of the columns.
     pub columns: Vec<String>,
-    /// Rows with their names, a tile for each column.
+    /// Rows with their names, which may have several lines, and a tile for each column.
     pub rows: Vec<(String, Vec<Tile>)>,
-    /// What false colours mean.
-    pub scale: Axis,
+    /// What false colours mean; none if there are none.
+    pub scale: Option<Axis>,
+    /// The edge of a picture, in pixels of the page.
+    pub edge: f64,
 }
 
-/// Sizes in pixels of the page: a picture, the room of a row's name, of the titles and of a
-/// caption, and the gap between pictures.
-const TILE: f64 = 160.0;
-const NAME: f64 = 84.0;
+/// Sizes in pixels of the page: the room beside a row's name, that of the titles and of a caption,
+/// and the gaps between pictures and between groups of columns.
+const BESIDE: f64 = 10.0;
 const HEAD: f64 = 58.0;
 const CAPTION: f64 = 22.0;
 const GAP: f64 = 8.0;
-/// Room below the pictures, and in it the scale: its length and height.
+const APART: f64 = 16.0;
+/// Room for the scale below the pictures, and in it the scale: its length and height.
 const FOOT: f64 = 70.0;
 const BAR: [f64; 2] = [420.0, 14.0];
 /// Colours of the scale.
 const STEPS: usize = 256;
 
-const TITLE: f64 = 15.0;
-const LETTERS: f64 = 12.0;
-const NUMBERS: f64 = 11.0;
-
 impl Sheet {
-    /// As SVG, without references to anything outside it.
-    ///
-    /// # Errors
-    /// [`PlotError::Drawing`] for a tile whose pixels are not a square.
-    pub fn svg(&self) -> Result<String, PlotError> {
-        Ok(svg::write(&self.page()?))
+    /// The edge of pictures with which the page is as wide as this.
+    pub fn edge_within(&self, width: f64) -> f64 {
+        let apart = APART * (self.groups.len() - 1) as f64;
+        (width - self.names() - apart) / self.columns.len() as f64 - GAP
     }
 
-    /// As PNG, with two pixels along each of the page.
-    ///
-    /// # Errors
-    /// As [`svg`](Self::svg).
-    pub fn png(&self) -> Result<Vec<u8>, PlotError> {
-        png::write(&self.page()?)
+    /// The room of the names of rows.
+    fn names(&self) -> f64 {
+        let lines = self.rows.iter().flat_map(|(name, _)| name.lines());
+        let widest = lines.map(|line| text::width(line, LETTERS)).fold(0.0, f64::max);
+        (2.0 * BESIDE + widest).ceil()
     }
 
-    fn page(&self) -> Result<Canvas, PlotError> {
-        let (across, down) = (TILE + GAP, TILE + CAPTION);
-        let width = NAME + across * self.columns.len() as f64;
+    /// Draws it.
+    ///
+    /// # Panics
+    /// For a tile whose pixels are not a square.
+    pub fn drawing(&self) -> Drawing {
+        let (across, edge, names) = (self.edge + GAP, self.edge, self.names());
+        let has_captions =
+            self.rows.iter().flat_map(|row| &row.1).any(|tile| !tile.caption.is_empty());
+        let down = edge + if has_captions { CAPTION } else { GAP };
+        let group = |column: usize| {
+            let ends = self.groups.iter().scan(0, |end, (count, _)| {
+                *end += count;
+                Some(*end)
+            });
+            ends.filter(|&end| end <= column).count()
+        };
+        let left = |i: usize| names + across * i as f64 + APART * group(i) as f64;
+        let width = left(self.columns.len() - 1) + across;
         let foot = HEAD + down * self.rows.len() as f64;
-        let mut canvas = Canvas { size: [width, foot + FOOT], shapes: Vec::new() };
-        canvas.text([0.5 * width, 22.0], &self.title, TITLE, Anchor::Middle, BLACK);
-        let left = |column: usize| NAME + across * column as f64;
+        let height = foot + if self.scale.is_some() { FOOT } else { 0.0 };
+        let mut drawing = Drawing::new([width, height]);
+        let mut first = 0;
+        for (count, heading) in &self.groups {
+            let middle = 0.5 * (left(first) + left(first + count - 1) + edge);
+            drawing.text([middle, 22.0], heading, TITLE, Anchor::Middle, BLACK);
+            first += count;
+        }
         for (i, heading) in self.columns.iter().enumerate() {
-            let at = [left(i) + 0.5 * TILE, HEAD - 10.0];
-            canvas.text(at, heading, LETTERS, Anchor::Middle, BLACK);
+            let at = [left(i) + 0.5 * edge, HEAD - 10.0];
+            drawing.text(at, heading, LETTERS, Anchor::Middle, BLACK);
         }
         for (row, (name, tiles)) in self.rows.iter().enumerate() {
             let top = HEAD + down * row as f64;
-            let at = [NAME - 10.0, top + 0.5 * TILE + 0.35 * LETTERS];
-            canvas.text(at, name, LETTERS, Anchor::End, BLACK);
+            for (i, line) in name.lines().enumerate() {
+                let y = top + 0.5 * edge + (0.35 + 1.3 * i as f64) * LETTERS;
+                drawing.text([names - BESIDE, y], line, LETTERS, Anchor::End, BLACK);
+            }
             for (column, tile) in tiles.iter().enumerate() {
-                let corner = [left(column), top];
-                canvas.shapes.push(self.image(tile, corner)?);
-                let at = [corner[0] + 0.5 * TILE, top + TILE + 14.0];
-                canvas.text(at, &tile.caption, NUMBERS, Anchor::Middle, BLACK);
+                let pixels = self.pixels(tile);
+                let side = pixels.len().isqrt();
+                assert_eq!(side * side, pixels.len(), "a square of pixels");
+                drawing.image([left(column), top], [edge; 2], side, pixels);
+                let at = [left(column) + 0.5 * edge, top + edge + 14.0];
+                drawing.text(at, &tile.caption, NUMBERS, Anchor::Middle, BLACK);
             }
         }
-        let corner = [0.5 * (width - BAR[0]), foot + 12.0];
-        heat::bar(&mut canvas, &self.scale, corner, BAR, STEPS);
-        Ok(canvas)
+        if let Some(scale) = &self.scale {
+            let corner = [0.5 * (width - BAR[0]), foot + 12.0];
+            draw_bar(&mut drawing, scale, corner, BAR, STEPS);
+        }
+        drawing
     }
 
-    fn image(&self, tile: &Tile, corner: [f64; 2]) -> Result<Shape, PlotError> {
-        let pixels: Vec<Color> = match &tile.content {
-            Content::Colors(colors) => colors.clone(),
-            Content::Values(values) => values
-                .iter()
-                .map(|&x| match x.is_nan() {
-                    true => [255; 3],
-                    false => false_color(self.scale.fraction(x)),
-                })
-                .collect(),
+    fn pixels(&self, tile: &Tile) -> Vec<Color> {
+        let shown = |scale: &Axis, x: f64| match x.is_nan() {
+            true => [255; 3],
+            false => false_color(scale.fraction(x)),
         };
-        let edge = tile.edge;
-        if edge == 0 || pixels.len() != edge * edge {
-            let why = format!("{} pixels for a picture of {edge} by {edge}", pixels.len());
-            return Err(PlotError::Drawing(why));
+        match (&tile.content, &self.scale) {
+            (Content::Colors(colors), _) => colors.clone(),
+            (Content::Values(values), Some(scale)) => {
+                values.iter().map(|&x| shown(scale, x)).collect()
+            }
+            (Content::Values(_), None) => panic!("numbers without a scale"),
         }
-        Ok(Shape::Image { corner, size: [TILE; 2], columns: edge, pixels })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plot::text;
+
+    const EDGE: f64 = 160.0;
 
     fn sheet(content: Content) -> Sheet {
-        let tile = Tile { edge: 2, content, caption: "RMSE 0".into() };
         Sheet {
-            title: "differences".into(),
+            groups: vec![(1, "differences".into())],
             columns: vec!["a form".into()],
-            rows: vec![("γ = 3".into(), vec![tile])],
-            scale: Axis::log("radiance", 1e-4, 1.0),
+            rows: vec![("γ = 3".into(), vec![Tile { content, caption: "RMSE 0".into() }])],
+            scale: Some(Axis::log("radiance", 1e-4, 1.0)),
+            edge: EDGE,
         }
-    }
-
-    fn decoded(sheet: &Sheet) -> image::RgbImage {
-        image::load_from_memory(&sheet.png().unwrap()).unwrap().to_rgb8()
     }
 
     /// The four pixels of the tile, as they are on the page.
     fn quarters(sheet: &Sheet) -> [[u8; 3]; 4] {
-        let page = decoded(sheet);
+        let page = image::load_from_memory(&sheet.drawing().png().unwrap()).unwrap().to_rgb8();
         [[0.25, 0.25], [0.75, 0.25], [0.25, 0.75], [0.75, 0.75]].map(|[x, y]| {
-            let at = [NAME + x * TILE, HEAD + y * TILE].map(|x| (2.0 * x) as u32);
+            let at = [sheet.names() + x * EDGE, HEAD + y * EDGE].map(|x| (2.0 * x) as u32);
             page.get_pixel(at[0], at[1]).0
         })
     }
@@ -157,15 +171,14 @@ mod tests {
     }
 
     #[test]
+    #[should_panic = "a square of pixels"]
     fn pixels_that_are_no_square_are_refused() {
-        let wrong = sheet(Content::Values(vec![0.0; 3]));
-        assert!(wrong.png().unwrap_err().to_string().contains("3 pixels"));
-        assert!(wrong.svg().is_err());
+        sheet(Content::Values(vec![0.0; 3])).drawing();
     }
 
     #[test]
     fn words_stand_on_the_page_and_have_their_letters() {
-        let drawn = sheet(Content::Values(vec![0.0; 4])).svg().unwrap();
+        let drawn = sheet(Content::Values(vec![0.0; 4])).drawing().svg();
         let document = roxmltree::Document::parse(&drawn).unwrap();
         let texts: Vec<&str> = document.descendants().filter_map(|node| node.text()).collect();
         for word in ["differences", "a form", "γ = 3", "RMSE 0", "radiance"] {

@@ -1,92 +1,70 @@
-//! A page as SVG.
+//! A drawing as SVG.
 
 use std::fmt::Write;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
-use super::canvas::{Anchor, At, Canvas, Shape};
+use super::drawing::{Anchor, At, Drawing, Shape};
 use super::ink::{BLACK, Color, GRID, on_dark};
 use super::{png, text};
 
-/// Where a drawing stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Place {
-    /// In a file of its own, on white.
-    File,
-    /// In an HTML page, light or dark.
-    Html,
-}
+/// What lines have in common.
+const LINES: &str = "fill=\"none\" stroke-linejoin=\"round\"";
 
-/// The page as a text in SVG 1.1, without references to anything outside it.
-pub(super) fn write(canvas: &Canvas) -> String {
-    let [width, height] = canvas.size;
-    let head = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-         viewBox=\"0 0 {width} {height}\" font-family=\"{}\">\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
-        text::FAMILIES
-    );
-    with_shapes(head, canvas, Place::File)
-}
-
-/// The page as an element of HTML: as wide as its place, in the fonts of the document, and with
-/// colours for a light and for a dark one. `label` says what is seen to those who do not see it.
-///
-/// Ink is `--ink` and the grid `--line`, custom properties of the document; other colours are
-/// `light-dark()`. A browser without these takes the attributes beside them: those on white.
-pub(super) fn write_inline(canvas: &Canvas, label: &str) -> String {
-    let [width, height] = canvas.size;
-    let label = escaped(label).replace('"', "&quot;");
-    let head = format!(
-        "<svg class=\"plot\" role=\"img\" viewBox=\"0 0 {width} {height}\" \
-         aria-label=\"{label}\">\n"
-    );
-    with_shapes(head, canvas, Place::Html)
-}
-
-fn with_shapes(head: String, canvas: &Canvas, place: Place) -> String {
-    let mut out = head;
-    for shape in &canvas.shapes {
-        // Writing to a string does not fail.
-        let _ = write_shape(&mut out, shape, place);
+impl Drawing {
+    /// As SVG 1.1 on white, without references to anything outside it.
+    pub fn svg(&self) -> String {
+        let [width, height] = self.size;
+        let head = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
+             viewBox=\"0 0 {width} {height}\" font-family=\"{}\" {LINES}>\n\
+             <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
+            text::FAMILIES
+        );
+        self.with_shapes(head, |property, color| format!("{property}=\"{}\"", hex(color)))
     }
-    out + "</svg>\n"
-}
 
-/// The attributes of what fills a shape and what its outline has.
-fn paint(fill: Option<Color>, stroke: Option<Color>, place: Place) -> String {
-    let mut text = format!("fill=\"{}\"", fill.map_or("none".into(), hex));
-    if let Some(color) = stroke {
-        let _ = write!(text, " stroke=\"{}\"", hex(color));
+    /// As an element of an HTML page, of class `plot`: as wide as its place, in the page's fonts,
+    /// with colours for light and dark; `label` is read to those who do not see it.
+    ///
+    /// Ink is `--ink` and the grid `--line`, custom properties of the page; other colours are
+    /// `light-dark()`. A browser without these takes the attributes beside them: those on white.
+    pub fn inline_svg(&self, label: &str) -> String {
+        let [width, height] = self.size;
+        let label = escaped(label).replace('"', "&quot;");
+        let head = format!(
+            "<svg class=\"plot\" role=\"img\" viewBox=\"0 0 {width} {height}\" {LINES} \
+             aria-label=\"{label}\">\n"
+        );
+        self.with_shapes(head, |property, color| {
+            let themed = match color {
+                BLACK => "var(--ink)".into(),
+                GRID => "var(--line)".into(),
+                _ => format!("light-dark({},{})", hex(color), hex(on_dark(color))),
+            };
+            format!("{property}=\"{}\" style=\"{property}:{themed}\"", hex(color))
+        })
     }
-    if place == Place::Html {
-        let styles = [("fill", fill), ("stroke", stroke)];
-        let styles = styles.into_iter().filter_map(|(property, color)| Some((property, color?)));
-        let styles = styles.map(|(property, color)| format!("{property}:{}", themed(color)));
-        let _ = write!(text, " style=\"{}\"", styles.collect::<Vec<_>>().join(";"));
-    }
-    text
-}
 
-/// A colour of CSS that serves light paper and dark.
-fn themed(color: Color) -> String {
-    match color {
-        BLACK => "var(--ink)".into(),
-        GRID => "var(--line)".into(),
-        _ => format!("light-dark({},{})", hex(color), hex(on_dark(color))),
+    /// `paint` writes the attributes of a property that is a colour.
+    fn with_shapes(&self, head: String, paint: impl Fn(&str, Color) -> String) -> String {
+        let mut out = head;
+        for shape in &self.shapes {
+            write_shape(&mut out, shape, &paint).expect("memory");
+        }
+        out + "</svg>\n"
     }
 }
 
-fn write_shape(out: &mut String, shape: &Shape, place: Place) -> std::fmt::Result {
+fn write_shape(
+    out: &mut String,
+    shape: &Shape,
+    paint: impl Fn(&str, Color) -> String,
+) -> std::fmt::Result {
     match shape {
         Shape::Line { points, color, width, dash } => {
-            // A page has thousands of ticks: what says nothing of them is left out.
-            let paint = paint(None, Some(*color), place);
-            match points.len() {
-                2 => write!(out, "<polyline {}", paint.trim_start_matches("fill=\"none\" "))?,
-                _ => write!(out, "<polyline {paint} stroke-linejoin=\"round\"")?,
-            }
+            write!(out, "<polyline {}", paint("stroke", *color))?;
             if *width != 1.0 {
                 write!(out, " stroke-width=\"{width}\"")?;
             }
@@ -98,13 +76,7 @@ fn write_shape(out: &mut String, shape: &Shape, place: Place) -> std::fmt::Resul
             writeln!(out, " points=\"{}\"/>", list(points))
         }
         Shape::Area { corners, color } => {
-            let paint = paint(Some(*color), None, place);
-            writeln!(out, "<polygon {paint} points=\"{}\"/>", list(corners))
-        }
-        Shape::Circle { center: [x, y], radius, color, filled } => {
-            let paint = paint(filled.then_some(*color), Some(*color), place);
-            let (x, y) = (number(*x), number(*y));
-            writeln!(out, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" {paint}/>")
+            writeln!(out, "<polygon {} points=\"{}\"/>", paint("fill", *color), list(corners))
         }
         Shape::Image { corner: [x, y], size: [width, height], columns, pixels } => {
             let [x, y, width, height] = [x, y, width, height].map(|x| number(*x));
@@ -125,7 +97,7 @@ fn write_shape(out: &mut String, shape: &Shape, place: Place) -> std::fmt::Resul
             };
             let turn =
                 if *turned { format!(" transform=\"rotate(-90 {x} {y})\"") } else { String::new() };
-            let (paint, text) = (paint(Some(*color), None, place), escaped(text));
+            let (paint, text) = (paint("fill", *color), escaped(text));
             writeln!(
                 out,
                 "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" text-anchor=\"{anchor}\" \
@@ -162,9 +134,9 @@ mod tests {
 
     #[test]
     fn letters_with_a_meaning_in_xml_are_escaped() {
-        let mut canvas = Canvas { size: [20.0, 10.0], shapes: Vec::new() };
-        canvas.text([1.0, 2.345], "σ < 1 & γ > 2", 10.0, Anchor::End, [255, 0, 16]);
-        let drawn = write(&canvas);
+        let mut drawing = Drawing::new([20.0, 10.0]);
+        drawing.text([1.0, 2.345], "σ < 1 & γ > 2", 10.0, Anchor::End, [255, 0, 16]);
+        let drawn = drawing.svg();
         assert!(drawn.contains(">σ &lt; 1 &amp; γ &gt; 2</text>"), "{drawn}");
         assert!(drawn.contains("y=\"2.35\"") && drawn.contains("#ff0010"), "{drawn}");
         assert!(roxmltree::Document::parse(&drawn).is_ok());
@@ -172,14 +144,12 @@ mod tests {
 
     #[test]
     fn in_a_page_each_colour_has_one_for_dark_paper_and_ink_is_that_of_the_page() {
-        let mut canvas = Canvas { size: [20.0, 10.0], shapes: Vec::new() };
-        canvas.text([1.0, 2.0], "<b>", 10.0, Anchor::End, BLACK);
-        canvas.line(vec![[0.0, 0.0], [1.0, 1.0]], GRID, 1.0, Dash::Solid);
-        canvas.line(vec![[0.0, 0.0], [1.0, 1.0]], [0, 114, 178], 1.0, Dash::Dotted);
-        let circle =
-            Shape::Circle { center: [1.0; 2], radius: 1.0, color: [0, 114, 178], filled: true };
-        canvas.shapes.push(circle);
-        let drawn = write_inline(&canvas, "a \"quoted\" & <label>");
+        let mut drawing = Drawing::new([20.0, 10.0]);
+        drawing.text([1.0, 2.0], "<b>", 10.0, Anchor::End, BLACK);
+        drawing.line(vec![[0.0, 0.0], [1.0, 1.0]], GRID, 1.0, Dash::Solid);
+        drawing.line(vec![[0.0, 0.0], [1.0, 1.0]], [0, 114, 178], 1.0, Dash::Dotted);
+        drawing.area(vec![[1.0; 2]], [0, 114, 178]);
+        let drawn = drawing.inline_svg("a \"quoted\" & <label>");
         let document = roxmltree::Document::parse(&drawn).unwrap();
         let root = document.root_element();
         assert_eq!(root.attribute("aria-label"), Some("a \"quoted\" & <label>"));
@@ -190,13 +160,11 @@ mod tests {
             .filter(roxmltree::Node::is_element)
             .map(|node| node.attribute("style").unwrap())
             .collect();
-        let dark = hex(on_dark([0, 114, 178]));
-        let blue = format!("light-dark(#0072b2,{dark})");
-        let circle = format!("fill:{blue};stroke:{blue}");
+        let blue = format!("light-dark(#0072b2,{})", hex(on_dark([0, 114, 178])));
         assert_eq!(styles[..2], ["fill:var(--ink)", "stroke:var(--line)"]);
-        assert_eq!(styles[2..], [format!("stroke:{blue}"), circle]);
+        assert_eq!(styles[2..], [format!("stroke:{blue}"), format!("fill:{blue}")]);
         // What stands in a file knows nothing of a page.
-        let file = write(&canvas);
+        let file = drawing.svg();
         assert!(!file.contains("style") && !file.contains("class"), "{file}");
     }
 }

@@ -23,6 +23,7 @@ use super::{ReportError, Source};
 use data::{Data, SIGMA, UNSTATED, is_unstated, label, look};
 pub use scene::{Film, Look};
 use scene::{Scene, jpeg};
+pub use tone::srgb;
 
 /// Pictures of lobes, and the one that stands for the sphere.
 const PICTURE: Film = Film { size: 240, samples: 96, seed: 1 };

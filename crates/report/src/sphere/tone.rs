@@ -3,8 +3,8 @@
 use glam::Vec3;
 
 /// Khronos' neutral tone curve, made to keep the colours of products: what is below its shoulder
-/// is what it was, but for an offset (<https://github.com/KhronosGroup/ToneMapping>), and sRGB's
-/// transfer function (IEC 61966-2-1). `present.frag` has the same.
+/// is what it was, but for an offset (<https://github.com/KhronosGroup/ToneMapping>), and
+/// [`srgb`]. `present.frag` has the same.
 pub(super) fn display(radiance: Vec3) -> [u8; 3] {
     const START: f32 = 0.8 - 0.04;
     const DESATURATION: f32 = 0.15;
@@ -19,9 +19,10 @@ pub(super) fn display(radiance: Vec3) -> [u8; 3] {
         let g = 1.0 - 1.0 / (DESATURATION * (peak - new) + 1.0);
         color += (new - color) * g;
     }
-    color.to_array().map(|x| (255.0 * encoded(x.clamp(0.0, 1.0)) + 0.5) as u8)
+    color.to_array().map(|x| (255.0 * srgb(x.clamp(0.0, 1.0).into()) + 0.5) as u8)
 }
 
-fn encoded(x: f32) -> f32 {
+/// The transfer function of sRGB (IEC 61966-2-1): from a share of white to what is stored of it.
+pub fn srgb(x: f64) -> f64 {
     if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
 }

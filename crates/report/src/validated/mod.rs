@@ -6,7 +6,7 @@ use maud::{Markup, html};
 
 use microfacet_validate::record::{Record, Returned, Tested, identity};
 
-use super::drawing::{error, symbols};
+use super::drawing::{error, symbols, table};
 use super::{ReportError, Source};
 use crate::words::{command, count, number};
 
@@ -102,39 +102,28 @@ fn worst(record: &Record) -> Markup {
         let class = if p < record.level_of_one_test { "number rejected" } else { "number" };
         html! { td class=(class) { (error(p)) } }
     };
-    html! {
-        h3 { "The smallest p-values" }
-        div.scroll tabindex="0" role="region" aria-label="The smallest p-values" {
-            table {
-                caption {
-                    "θ and φ are the angles of the view. KS is the distance of Kolmogorov and \
-                     Smirnov of the slopes in the plane of incidence."
+    let caption = html! {
+        "θ and φ are the angles of the view. KS is the distance of Kolmogorov and Smirnov of the \
+         slopes in the plane of incidence."
+    };
+    let head = ["σx", "σy", "γ", "θ", "φ", "p, slopes", "p, normals", "KS", "error of G1"];
+    let rows = html! {
+        @for tested in &shown {
+            @let one = &tested.configuration;
+            tr {
+                @for x in [one.sigma_x, one.sigma_y] { td.number { (short(x)) } }
+                td.number { (symbols(&short(one.gamma))) }
+                @for angle in [one.theta, one.phi] {
+                    td.number { (short(angle.to_degrees())) "°" }
                 }
-                thead {
-                    tr {
-                        @for name in [
-                            "σx", "σy", "γ", "θ", "φ", "p, slopes", "p, normals", "KS", "error of G1",
-                        ] {
-                            th.number scope="col" { (name) }
-                        }
-                    }
-                }
-                tbody {
-                    @for tested in &shown {
-                        @let one = &tested.configuration;
-                        tr {
-                            @for x in [one.sigma_x, one.sigma_y] { td.number { (short(x)) } }
-                            td.number { (symbols(&short(one.gamma))) }
-                            @for angle in [one.theta, one.phi] {
-                                td.number { (short(angle.to_degrees())) "°" }
-                            }
-                            @for p in [tested.p_lobe, tested.p_world] { (cell(p)) }
-                            @for x in [tested.ks, tested.g1_error] { td.number { (error(x)) } }
-                        }
-                    }
-                }
+                @for p in [tested.p_lobe, tested.p_world] { (cell(p)) }
+                @for x in [tested.ks, tested.g1_error] { td.number { (error(x)) } }
             }
         }
+    };
+    html! {
+        h3 { "The smallest p-values" }
+        (table("The smallest p-values", &caption, [&[], &head], &rows))
         details {
             summary { "To repeat them" }
             p {
@@ -164,33 +153,21 @@ fn furnaces(record: &Record) -> Markup {
         let class = if is_off(share) { "number rejected" } else { "number" };
         html! { td class=(class) { (format!("{share:.5}")) } }
     };
-    html! {
-        h3 { "White furnaces" }
-        div.scroll tabindex="0" role="region" aria-label="White furnaces" {
-            table {
-                caption {
-                    "The share of light that returns with Kulla–Conty’s lobe, over materials and "
-                    "views of each table of albedos; 1 ± " (number(record.furnace_tolerance))
-                    " is allowed."
-                }
-                thead {
-                    tr {
-                        th scope="col" { "masking" }
-                        @for name in ["points", "lowest", "highest"] {
-                            th.number scope="col" { (name) }
-                        }
-                    }
-                }
-                tbody {
-                    @for Returned { masking, points, lowest, highest } in &record.furnaces {
-                        tr {
-                            th scope="row" { bdi { (masking) } }
-                            td.number { (points) }
-                            @for share in [*lowest, *highest] { (cell(share)) }
-                        }
-                    }
-                }
+    let caption = html! {
+        "The share of light that returns with Kulla–Conty’s lobe, over materials and views of each \
+         table of albedos; 1 ± " (number(record.furnace_tolerance)) " is allowed."
+    };
+    let rows = html! {
+        @for Returned { masking, points, lowest, highest } in &record.furnaces {
+            tr {
+                th scope="row" { bdi { (masking) } }
+                td.number { (points) }
+                @for share in [*lowest, *highest] { (cell(share)) }
             }
         }
+    };
+    html! {
+        h3 { "White furnaces" }
+        (table("White furnaces", &caption, [&["masking"], &["points", "lowest", "highest"]], &rows))
     }
 }

@@ -28,18 +28,14 @@ pub(super) fn p_values(record: &Record) -> Markup {
     // Smaller ones leave the figure at its lower edge.
     let low = (0.3 * least).clamp(1e-12, 0.1);
     let left = 0.5 * chance(0);
-    let line = |key, name: &str, dash, points| Curve { key, name: name.into(), dash, points };
-    let panel = Panel {
-        title: "p-values".into(),
-        x: Axis::log("share of the tests with a smaller p", left, 1.0).coarse(),
-        y: Axis::log("p", low, 1.0).coarse(),
-        curves: vec![
-            line(Key::Nth(0), "tests", Dash::Solid, points.collect()),
-            line(Key::Nth(8), "chance", Dash::Dashed, vec![(left, left), (1.0, 1.0)]),
-            line(Key::Nth(1), "rejected below", Dash::Dotted, vec![(left, level), (1.0, level)]),
-        ],
-        marks: Vec::new(),
-    };
+    let curves = [
+        Curve::new(Key::Nth(0), "tests", points),
+        Curve::new(Key::Nth(8), "chance", [(left, left), (1.0, 1.0)]).dashed(Dash::Dashed),
+        Curve::new(Key::Nth(1), "rejected below", [(left, level), (1.0, level)])
+            .dashed(Dash::Dotted),
+    ];
+    let x = Axis::log("share of the tests with a smaller p", left, 1.0).coarse();
+    let panel = Panel::new("p-values", x, Axis::log("p", low, 1.0).coarse(), curves);
     let smallest = sorted.first().copied().unwrap_or(f64::NAN);
     let label = format!(
         "Sorted p-values of {} tests, from {smallest:.2e}; one is rejected below {level:.2e}",
@@ -68,19 +64,9 @@ pub(super) fn masking(record: &Record) -> Markup {
         .map(|i| ((i as f64 + 0.5) / views, if sorted[i] < LEAST { LEAST } else { sorted[i] }));
     let largest = sorted.last().copied().unwrap_or(f64::NAN);
     let high = if largest.is_finite() { largest.max(HIGH) } else { 1.0 };
-    let curve = Curve {
-        key: Key::Nth(0),
-        name: String::new(),
-        dash: Dash::Solid,
-        points: points.collect(),
-    };
-    let panel = Panel {
-        title: "Error of G1".into(),
-        x: Axis::linear("share of the configurations with a smaller error", 0.0, 1.0),
-        y: Axis::log("error of G1", LEAST, (2.0 * high).min(f64::MAX)).coarse(),
-        curves: vec![curve],
-        marks: Vec::new(),
-    };
+    let x = Axis::linear("share of the configurations with a smaller error", 0.0, 1.0);
+    let y = Axis::log("error of G1", LEAST, (2.0 * high).min(f64::MAX)).coarse();
+    let panel = Panel::new("Error of G1", x, y, [Curve::new(Key::Nth(0), "", points)]);
     let label = format!("Sorted errors of G1 of {views} configurations, up to {largest:.2e}");
     html! {
         figure {

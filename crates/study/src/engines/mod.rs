@@ -19,6 +19,8 @@ use microfacet_export::texture::{
 };
 use microfacet_sampler::Masking;
 
+use crate::Outcome;
+
 /// Cosines that are even, and those that crowd at the horizon.
 const EVEN: usize = 500;
 const LOW: usize = 120;
@@ -127,7 +129,7 @@ fn written(layout: &Layout, fitted: bool) -> Texture {
 }
 
 /// Prints what the module's page says.
-pub fn run(arguments: &[String]) {
+pub fn run(arguments: &[String]) -> Outcome {
     let folder = arguments.first().map(PathBuf::from);
     let mut judge = Judge::new();
     let tables = LAYOUTS.each_ref().map(|layout| {
@@ -159,4 +161,5 @@ pub fn run(arguments: &[String]) {
             println!("| {} | {rows} × {columns} | {} |", layout.name, cells.join(" | "));
         }
     }
+    Ok(())
 }

@@ -12,7 +12,6 @@
 
 pub mod made;
 
-use std::error::Error;
 use std::path::Path;
 
 use made::Material;
@@ -20,8 +19,10 @@ use made::Material;
 use microfacet_baker::store;
 use microfacet_fit::merl::MIDDLE;
 
+use crate::Outcome;
+
 /// Prints what the module's page says.
-pub fn run(arguments: &[String]) -> Result<(), Box<dyn Error>> {
+pub fn run(arguments: &[String]) -> Outcome {
     let (place, folder) = match arguments {
         [folder] if !folder.starts_with('-') => (MIDDLE, folder),
         [option, folder] if option == "--start" => (0.0, folder),

@@ -10,6 +10,7 @@ use microfacet_baker::progress::Meter;
 use microfacet_baker::scene::Scene as Materials;
 use microfacet_baker::table_set::{Settings, Target, bake_with};
 use microfacet_baker::table_spec::Quality;
+use microfacet_report::plot::{Content, Sheet, Tile};
 use microfacet_sampler::{
     AnyBsdf, BindError, Compensation, Conductor, ConductorFresnel, Dielectric, Masking, Metal,
     Plastic, StandIn, Tables,
@@ -34,26 +35,37 @@ pub(crate) enum Figure {
 }
 
 /// Spheres in rows and columns.
-pub(crate) struct Sheet {
-    pub(crate) columns: Vec<String>,
-    /// Columns that stand together, from the left: how many, and their heading.
-    pub(crate) groups: Vec<(usize, String)>,
-    pub(crate) rows: Vec<Row>,
+pub(crate) struct Spheres {
+    /// The page, with captions and without pictures.
+    pub(crate) sheet: Sheet,
+    /// What its pictures show, row by row.
+    pub(crate) scenes: Vec<Scene>,
     /// Whether radiance is shown as it is, with 1 as white, or under a shoulder.
     pub(crate) is_linear: bool,
 }
 
-/// A row: a name, a line below it, and a sphere for each column.
-pub(crate) struct Row {
-    pub(crate) name: String,
-    pub(crate) detail: String,
-    pub(crate) cells: Vec<Cell>,
-}
+/// The name of a row, and a sphere with its caption for each column.
+type Row = (String, Vec<(Scene, String)>);
 
-/// A sphere, and what stands below it.
-pub(crate) struct Cell {
-    pub(crate) scene: Scene,
-    pub(crate) caption: String,
+impl Spheres {
+    fn new(
+        groups: Vec<(usize, String)>,
+        columns: Vec<String>,
+        rows: Vec<Row>,
+        is_linear: bool,
+    ) -> Self {
+        let mut scenes = Vec::new();
+        let rows = rows.into_iter().map(|(name, spheres)| {
+            let tile = |(scene, caption)| {
+                scenes.push(scene);
+                Tile { content: Content::Colors(Vec::new()), caption }
+            };
+            (name, spheres.into_iter().map(tile).collect())
+        });
+        let rows = rows.collect();
+        let sheet = Sheet { groups, columns, rows, scale: None, edge: 0.0 };
+        Self { sheet, scenes, is_linear }
+    }
 }
 
 const SHAPES: [f64; 6] = [1.51, 1.65, 2.0, 4.0, 10.0, 50.0];
@@ -72,7 +84,7 @@ const RED: [f32; 3] = [0.65, 0.04, 0.03];
 
 impl Figure {
     /// The figure, with a meter of the bake that some need.
-    pub(crate) fn sheet(self, meter: &Meter) -> Result<Sheet, Box<dyn Error>> {
+    pub(crate) fn spheres(self, meter: &Meter) -> Result<Spheres, Box<dyn Error>> {
         Ok(match self {
             Self::Roughness => roughness(&Tables::embedded())?,
             Self::Materials => materials(&tables(meter)?)?,
@@ -85,9 +97,9 @@ fn label(gamma: f64) -> String {
     format!("γ = {gamma}")
 }
 
-fn studio(material: impl Into<AnyBsdf>, floor: Floor) -> Cell {
+fn studio(material: impl Into<AnyBsdf>, floor: Floor) -> (Scene, String) {
     let scene = Scene { material: material.into(), floor: Some(floor), sky: Sky::studio() };
-    Cell { scene, caption: String::new() }
+    (scene, String::new())
 }
 
 /// The embedded tables, and what they lack: albedos of dielectrics and of lobes that are not round.
@@ -129,15 +141,14 @@ fn brushed(tilt: f64, gamma: f64) -> String {
 
 /// A row of a sphere for each column.
 fn row<T: Copy>(
-    [name, detail]: [String; 2],
+    name: String,
     columns: &[T],
-    cell: impl Fn(T) -> Result<Cell, BindError>,
+    sphere: impl Fn(T) -> Result<(Scene, String), BindError>,
 ) -> Result<Row, BindError> {
-    let cells = columns.iter().map(|&column| cell(column)).collect::<Result<_, _>>()?;
-    Ok(Row { name, detail, cells })
+    Ok((name, columns.iter().map(|&column| sphere(column)).collect::<Result<_, _>>()?))
 }
 
-fn materials(tables: &Tables) -> Result<Sheet, BindError> {
+fn materials(tables: &Tables) -> Result<Spheres, BindError> {
     let exact = StandIn::Refused;
     let gold = |(gamma, compensation)| {
         let gold = Conductor::new(tables.lobe(SIGMA, gamma)?, Metal::Gold);
@@ -163,55 +174,46 @@ fn materials(tables: &Tables) -> Result<Sheet, BindError> {
     let compensated = SHAPES[..COMPENSATED].iter().map(|&gamma| (gamma, Compensation::KullaConty));
     let columns: Vec<_> = single.into_iter().chain(compensated).collect();
     let [x, y] = BRUSHED;
-    let name = |name: &str, detail: String| [name.to_string(), detail];
-    Ok(Sheet {
-        rows: vec![
-            row(name("Gold", format!("σ = {SIGMA}")), &columns, gold)?,
-            row(name("Plastic", format!("σ = {SIGMA}, η = {COAT}")), &columns, plastic)?,
-            row(name("Diamond", format!("σ = {SIGMA}, η = {DIAMOND}")), &columns, diamond)?,
-            row(name("Aluminium", format!("σ = ({x}, {y})")), &columns, aluminium(0.0))?,
-            row(name("Tilted", format!("the same, by {TILT}")), &columns, aluminium(TILT))?,
-        ],
-        columns: columns.iter().map(|(gamma, _)| label(*gamma)).collect(),
-        groups: vec![
-            (SHAPES.len(), "one bounce".into()),
-            (COMPENSATED, "all bounces (Kulla–Conty)".into()),
-        ],
-        is_linear: false,
-    })
+    let rows = vec![
+        row(format!("Gold\nσ = {SIGMA}"), &columns, gold)?,
+        row(format!("Plastic\nσ = {SIGMA}, η = {COAT}"), &columns, plastic)?,
+        row(format!("Diamond\nσ = {SIGMA}, η = {DIAMOND}"), &columns, diamond)?,
+        row(format!("Aluminium\nσ = ({x}, {y})"), &columns, aluminium(0.0))?,
+        row(format!("Tilted\nthe same, by {TILT}"), &columns, aluminium(TILT))?,
+    ];
+    let groups = vec![
+        (SHAPES.len(), "one bounce".into()),
+        (COMPENSATED, "all bounces (Kulla–Conty)".into()),
+    ];
+    let headings = columns.iter().map(|(gamma, _)| label(*gamma)).collect();
+    Ok(Spheres::new(groups, headings, rows, false))
 }
 
-fn roughness(tables: &Tables) -> Result<Sheet, BindError> {
+fn roughness(tables: &Tables) -> Result<Spheres, BindError> {
     let each = |sigma: f64| {
-        row([format!("σ = {sigma}"), String::new()], &SHAPES, |gamma| {
+        row(format!("σ = {sigma}"), &SHAPES, |gamma| {
             Ok(studio(Conductor::new(tables.lobe(sigma, gamma)?, Metal::Aluminium), Floor::GREY))
         })
     };
-    Ok(Sheet {
-        columns: SHAPES.map(label).into(),
-        groups: vec![(SHAPES.len(), "Aluminium, one bounce".into())],
-        rows: [0.05, 0.1, 0.3, 0.6, 1.0].into_iter().map(each).collect::<Result<_, _>>()?,
-        is_linear: false,
-    })
+    let rows = [0.05, 0.1, 0.3, 0.6, 1.0].into_iter().map(each).collect::<Result<_, _>>()?;
+    let groups = vec![(SHAPES.len(), "Aluminium, one bounce".into())];
+    Ok(Spheres::new(groups, SHAPES.map(label).into(), rows, false))
 }
 
-fn energy(tables: &Tables) -> Result<Sheet, BindError> {
+fn energy(tables: &Tables) -> Result<Spheres, BindError> {
     const SIGMAS: [f64; 6] = [0.01, 0.1, 0.3, 0.6, 1.0, 2.0];
     // As the paper has it.
     let masking = Masking::Uncorrelated;
     let each = |gamma| {
-        row([label(gamma), String::new()], &SIGMAS, |sigma| {
+        row(label(gamma), &SIGMAS, |sigma| {
             let white = Conductor::new(tables.lobe(sigma, gamma)?, ConductorFresnel::mirror());
             let material = white.with_masking(masking).into();
             let average = tables.albedo(sigma, gamma, masking)?.albedo_average();
-            let scene = Scene { material, floor: None, sky: Sky::white() };
-            Ok(Cell { scene, caption: format!("{average:.3}") })
+            Ok((Scene { material, floor: None, sky: Sky::white() }, format!("{average:.3}")))
         })
     };
-    Ok(Sheet {
-        columns: SIGMAS.map(|sigma| format!("σ = {sigma}")).into(),
-        groups: vec![(SIGMAS.len(), "light that one bounce returns, F = 1".into())],
-        rows: SHAPES.into_iter().map(each).collect::<Result<_, _>>()?,
-        is_linear: true,
-    })
+    let rows = SHAPES.into_iter().map(each).collect::<Result<_, _>>()?;
+    let groups = vec![(SIGMAS.len(), "light that one bounce returns, F = 1".into())];
+    let columns = SIGMAS.map(|sigma| format!("σ = {sigma}"));
+    Ok(Spheres::new(groups, columns.into(), rows, true))
 }

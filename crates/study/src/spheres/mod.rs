@@ -15,7 +15,6 @@ pub mod sky;
 #[cfg(test)]
 mod tests;
 
-use std::error::Error;
 use std::iter;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -27,13 +26,14 @@ use glam::Vec3;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
-use figures::{Figure, Sheet};
-use page::{Layout, Page};
+use figures::{Figure, Spheres};
 use path::Tracer;
 use random::Random;
 use scene::{Ray, Scene};
 
 use microfacet_baker::progress::Meter;
+
+use crate::Outcome;
 
 /// The camera looks down by this many radians, from far away.
 const ELEVATION: f32 = 0.45;
@@ -48,8 +48,8 @@ struct Arguments {
     /// The figure
     #[arg(long, value_enum, default_value = "8")]
     figure: Figure,
-    /// Pixels across the page
-    #[arg(long, default_value = "1600", value_parser = clap::value_parser!(u32).range(200..=16384))]
+    /// Pixels across the page, or a few less
+    #[arg(long, default_value = "1800", value_parser = clap::value_parser!(u32).range(600..=16384))]
     width: u32,
     #[command(flatten)]
     limit: Limit,
@@ -81,7 +81,7 @@ struct Film {
     /// Pixels across.
     cell: usize,
     limit: Limit,
-    /// As of a [`Sheet`].
+    /// As of [`Spheres`].
     is_linear: bool,
 }
 
@@ -112,16 +112,14 @@ fn pixel(scene: &Scene, [x, y]: [usize; 2], film: Film) -> Vec3 {
     sum / limit.samples as f32
 }
 
-/// All pixels of a sheet, line by line of each square, on all cores.
-fn render(sheet: &Sheet, film: Film, meter: &Meter) -> Vec<Vec<Vec3>> {
+/// All pixels, line by line of each square, on all cores.
+fn render(scenes: &[Scene], film: Film, meter: &Meter) -> Vec<Vec<Vec3>> {
     let cell = film.cell;
-    let scenes: Vec<&Scene> =
-        sheet.rows.iter().flat_map(|row| &row.cells).map(|cell| &cell.scene).collect();
     meter.expect(1.0);
     let stage = meter.stage(1.0);
     stage.split(scenes.len() * cell);
     let line = |i: usize| {
-        let line = (0..cell).map(|x| pixel(scenes[i / cell], [x, i % cell], film));
+        let line = (0..cell).map(|x| pixel(&scenes[i / cell], [x, i % cell], film));
         let line = line.collect();
         stage.step();
         line
@@ -152,7 +150,7 @@ fn watched<T>(what: &'static str, work: impl FnOnce(&Meter) -> T) -> T {
 }
 
 /// Prints what the module's page says.
-pub fn run(arguments: &[String]) -> Result<(), Box<dyn Error>> {
+pub fn run(arguments: &[String]) -> Outcome {
     let Arguments { output, figure, width, limit } =
         Arguments::parse_from(iter::once("spheres").chain(arguments.iter().map(String::as_str)));
     let file = |extension: &str| {
@@ -166,11 +164,12 @@ pub fn run(arguments: &[String]) -> Result<(), Box<dyn Error>> {
         _ => Path::new("."),
     };
     tempfile::tempfile_in(folder).map_err(|why| format!("{}: {why}", folder.display()))?;
-    let sheet = watched("Baking albedos", |meter| figure.sheet(meter))?;
-    let layout = Layout::new(&sheet, width as usize);
-    let film = Film { cell: layout.cell, limit, is_linear: sheet.is_linear };
-    let lines = watched("Rendering", |meter| render(&sheet, film, meter));
-    let page = Page { sheet: &sheet, layout, lines };
-    page.write_exr(&file(".exr"))?;
-    page.write_png(&file(".png"))
+    let mut spheres: Spheres = watched("Baking albedos", |meter| figure.spheres(meter))?;
+    // A drawing has two pixels along each of the page.
+    let cell = (2.0 * spheres.sheet.edge_within(0.5 * f64::from(width))) as usize;
+    spheres.sheet.edge = 0.5 * cell as f64;
+    let film = Film { cell, limit, is_linear: spheres.is_linear };
+    let lines = watched("Rendering", |meter| render(&spheres.scenes, film, meter));
+    page::write_exr(&file(".exr"), &spheres, &lines)?;
+    page::write_png(&file(".png"), spheres, &lines)
 }

@@ -87,28 +87,17 @@ pub(super) fn figure() -> Figure {
     let of_gamma =
         GAMMAS.map(|gamma| sigmas.clone().map(|sigma| distances(sigma, gamma)).collect::<Vec<_>>());
     let panel = |(title, bound, measure): Measure| {
-        let curve = |((gamma, dash), all): ((f64, Dash), &Vec<Vec<At>>)| Curve {
-            key: Key::Gamma(gamma),
-            name: format!("γ = {gamma}"),
-            dash,
-            points: sigmas.clone().zip(all.iter().map(|all| 100.0 * measure(all))).collect(),
+        let curve = |((gamma, dash), all): ((f64, Dash), &Vec<Vec<At>>)| {
+            let points = sigmas.clone().zip(all.iter().map(|all| 100.0 * measure(all)));
+            Curve::new(Key::Gamma(gamma), format!("γ = {gamma}"), points).dashed(dash)
         };
         let mut curves: Vec<Curve> =
             GAMMAS.into_iter().zip(DASHES).zip(&of_gamma).map(curve).collect();
-        curves.push(Curve {
-            key: Key::Method(Method::Other),
-            name: "printed for γ = 40".into(),
-            dash: Dash::Solid,
-            points: vec![(0.0, bound), (high, bound)],
-        });
+        let printed = [(0.0, bound), (high, bound)];
+        curves.push(Curve::new(Key::Method(Method::Other), "printed for γ = 40", printed));
         let highest = curves.iter().flat_map(|curve| &curve.points).map(|p| p.1);
-        Panel {
-            title: title.into(),
-            x: Axis::linear("σ", 0.0, high),
-            y: Axis::linear("distance, per cent", 0.0, 1.05 * highest.fold(0.0, f64::max)),
-            curves,
-            marks: Vec::new(),
-        }
+        let y = Axis::linear("distance, per cent", 0.0, 1.05 * highest.fold(0.0, f64::max));
+        Panel::new(title, Axis::linear("σ", 0.0, high), y, curves)
     };
     Figure { panels: MEASURES.map(panel).into(), columns: 3, panel: [430.0, 310.0] }
 }

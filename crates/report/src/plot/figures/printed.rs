@@ -4,7 +4,7 @@ use microfacet_model::Shape;
 use microfacet_model::printed::{FORMS, Form};
 
 use crate::plot::figures::curve;
-use crate::plot::{Axis, Dash, Figure, Key, Method, Panel};
+use crate::plot::{Axis, Curve, Dash, Figure, Key, Method, Panel};
 
 /// What each of [`FORMS`] is in a drawing.
 const METHODS: [Method; FORMS.len()] =
@@ -16,7 +16,7 @@ fn name(form: &Form) -> String {
 
 /// Four shapes: a small integer, a half-integer, and two where sums lose all digits.
 pub(super) fn figure() -> Figure {
-    Figure::new([3.0, 10.5, 40.0, 150.0].into_iter().map(panel).collect())
+    Figure::new([3.0, 10.5, 40.0, 150.0].map(panel))
 }
 
 /// The relative error of Λ in the forms that are defined at γ, over z = cot θ/σ, as far as a form
@@ -50,11 +50,7 @@ fn panel(gamma: f64) -> Panel {
         }
         curve
     });
-    Panel {
-        title: format!("Λ as printed, γ = {gamma}{missing}"),
-        curves: curves.collect(),
-        x,
-        y: Axis::log("relative error of Λ", 1e-17, 1.0),
-        marks: Vec::new(),
-    }
+    let curves: Vec<Curve> = curves.collect();
+    let title = format!("Λ as printed, γ = {gamma}{missing}");
+    Panel::new(title, x, Axis::log("relative error of Λ", 1e-17, 1.0), curves)
 }

@@ -39,7 +39,7 @@ const SETS: [Set; 2] = [
 
 /// A distribution with how it is drawn.
 struct Drawn {
-    key: Key,
+    kind: DistributionKind,
     name: String,
     dash: Dash,
     d: Box<dyn Isotropic>,
@@ -47,7 +47,7 @@ struct Drawn {
 
 impl Drawn {
     fn curve(&self, x: &Axis, f: impl Fn(f64) -> f64) -> Curve {
-        Curve { dash: self.dash, ..curve(self.key, self.name.clone(), x, f) }
+        curve(Key::Kind(self.kind), &self.name, x, f).dashed(self.dash)
     }
 }
 
@@ -57,12 +57,8 @@ impl Set {
         use DistributionKind as Kind;
         let of = |kind: Kind, parameter: &str, value: f64, dash| {
             let d = Named { kind, values: vec![value] }.build().expect("printed parameters");
-            Drawn {
-                key: Key::Kind(kind),
-                name: format!("{}, {parameter} = {value}", kind.name()),
-                dash,
-                d,
-            }
+            let name = format!("{}, {parameter} = {value}", kind.name());
+            Drawn { kind, name, dash, d }
         };
         vec![
             of(Kind::Beckmann, "m", self.beckmann, Dash::Solid),
@@ -74,58 +70,40 @@ impl Set {
         ]
     }
 
-    /// β as far as the lobes reach, in degrees.
-    fn angles(&self) -> Axis {
-        Axis::linear("β in degrees", 0.0, (5.0 * self.beckmann).min(FRAC_PI_2).to_degrees())
+    /// Curves over β as far as the lobes reach, in degrees: of D/D(0), and that of Beckmann, which
+    /// is left out of those that are compared with it.
+    fn over_angles(
+        &self,
+        title: &str,
+        y: Axis,
+        is_compared: bool,
+        f: fn(f64, f64) -> f64,
+    ) -> Panel {
+        let reach = (5.0 * self.beckmann).min(FRAC_PI_2).to_degrees();
+        let (x, all) = (Axis::linear("β in degrees", 0.0, reach), self.all());
+        let curve = |of: &Drawn| {
+            of.curve(&x, |at| {
+                let [own, beckmann] = [&of.d, &all[0].d].map(|d| d.relative_d(at.to_radians()));
+                f(own, beckmann)
+            })
+        };
+        let curves: Vec<Curve> = all[usize::from(is_compared)..].iter().map(curve).collect();
+        Panel::new(format!("{title}, m = {}", self.beckmann), x, y, curves)
     }
 
     fn unit_forms(&self) -> Panel {
-        let x = self.angles();
-        let curves =
-            self.all().into_iter().map(|of| of.curve(&x, |at| of.d.relative_d(at.to_radians())));
-        Panel {
-            title: format!("D/D(0) near Beckmann, m = {}", self.beckmann),
-            curves: curves.collect(),
-            x,
-            y: Axis::linear("D(β)/D(0)", 0.0, 1.05),
-            marks: Vec::new(),
-        }
+        let y = Axis::linear("D(β)/D(0)", 0.0, 1.05);
+        self.over_angles("D/D(0) near Beckmann", y, false, |d, _| d)
     }
 
     fn differences(&self) -> Panel {
-        let (x, all) = (self.angles(), self.all());
-        let beckmann = &all[0].d;
-        let curves = all[1..].iter().map(|of| {
-            of.curve(&x, |at| {
-                let theta = at.to_radians();
-                100.0 * (of.d.relative_d(theta) - beckmann.relative_d(theta))
-            })
-        });
-        Panel {
-            title: format!("Difference to Beckmann, m = {}", self.beckmann),
-            curves: curves.collect(),
-            x,
-            y: Axis::linear("difference in % of the maximum", -17.0, 17.0),
-            marks: Vec::new(),
-        }
+        let y = Axis::linear("difference in % of the maximum", -17.0, 17.0);
+        self.over_angles("Difference to Beckmann", y, true, |d, beckmann| 100.0 * (d - beckmann))
     }
 
     fn tails(&self) -> Panel {
-        let (x, all) = (self.angles(), self.all());
-        let beckmann = &all[0].d;
-        let curves = all[1..].iter().map(|of| {
-            of.curve(&x, |at| {
-                let theta = at.to_radians();
-                of.d.relative_d(theta) / beckmann.relative_d(theta)
-            })
-        });
-        Panel {
-            title: format!("D/D(0) over Beckmann's, m = {}", self.beckmann),
-            curves: curves.collect(),
-            x,
-            y: Axis::log("ratio of D/D(0)", 0.1, 1e5),
-            marks: Vec::new(),
-        }
+        let y = Axis::log("ratio of D/D(0)", 0.1, 1e5);
+        self.over_angles("D/D(0) over Beckmann's", y, true, |d, beckmann| d / beckmann)
     }
 
     /// Brightness along the line through the highlight of a sphere, with view and light far away at
@@ -142,28 +120,23 @@ impl Set {
         let low = (half - reach).max(light - FRAC_PI_2).max(-FRAC_PI_2);
         let high = (half + reach).min(FRAC_PI_2);
         let x = Axis::linear("distance from the centre, in radii", low.sin(), high.sin());
-        let curves = self.all();
-        let curves = curves.iter().map(|of| {
+        let curve = |of: &Drawn| {
             let brightness = |normal: f64| {
                 let (cos_v, cos_l) = (normal.cos().max(0.0), (normal - light).cos().max(0.0));
                 of.d.relative_d((normal - half).abs()) * cos_l / cos_v.max(cos_l)
             };
             let peak = brightness(half);
             of.curve(&x, |at| brightness(at.clamp(-1.0, 1.0).asin()) / peak)
-        });
-        Panel {
-            title: format!("Light at {degrees}° to the view, Beckmann m = {}", self.beckmann),
-            curves: curves.collect(),
-            x,
-            y: Axis::linear("relative brightness", 0.0, 1.05),
-            marks: Vec::new(),
-        }
+        };
+        let curves: Vec<Curve> = self.all().iter().map(curve).collect();
+        let title = format!("Light at {degrees}° to the view, Beckmann m = {}", self.beckmann);
+        Panel::new(title, x, Axis::linear("relative brightness", 0.0, 1.05), curves)
     }
 }
 
 /// D/D(0), and what Beckmann's has more or less, as in his figures 1 and 2.
 pub(super) fn distributions() -> Figure {
-    Figure::new(SETS.iter().flat_map(|set| [set.unit_forms(), set.differences()]).collect())
+    Figure::new(SETS.iter().flat_map(|set| [set.unit_forms(), set.differences()]))
 }
 
 /// The same as ratios, which show the tails.
@@ -175,7 +148,7 @@ pub(super) fn tails() -> Figure {
 /// Highlights of a rough sphere and of a smooth one, after his figures 3–5.
 pub(super) fn highlights() -> Figure {
     let row = |set: &Set| [45.0, 120.0].map(|degrees| set.highlight(degrees));
-    Figure::new(SETS.iter().flat_map(row).collect())
+    Figure::new(SETS.iter().flat_map(row))
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use glam::DVec3;
 use microfacet_model::{MicrofacetDistribution, StudentT};
 
 use crate::plot::figures::curve;
-use crate::plot::{Axis, Curve, Figure, Key, Panel};
+use crate::plot::{Axis, Figure, Key, Panel};
 
 /// The shapes at σ = [`SIGMA`], and the roughnesses at γ = [`GAMMA`].
 const GAMMAS: [f64; 5] = [1.6, 2.0, 3.0, 5.0, 40.0];
@@ -15,46 +15,29 @@ const GAMMA: f64 = 3.0;
 
 /// P22 on a logarithmic scale, for the shapes differ in their tails, and G1.
 pub(super) fn figure() -> Figure {
+    let of = |sigma, gamma| StudentT::new(sigma, gamma).expect("the figure's own parameters");
     let by_gamma = GAMMAS.map(|g| (Key::Gamma(g), format!("γ = {g}"), of(SIGMA, g)));
     let by_sigma = SIGMAS.map(|s| (Key::Sigma(s), format!("σ = {s}"), of(s, GAMMA)));
     let rows = [(format!("σ = {SIGMA}"), by_gamma), (format!("γ = {GAMMA}"), by_sigma)];
-    Figure::new(
-        rows.iter().flat_map(|(fixed, row)| [slopes(fixed, row), masking(fixed, row)]).collect(),
-    )
-}
-
-type Row = [(Key, String, StudentT); 5];
-
-fn of(sigma: f64, gamma: f64) -> StudentT {
-    StudentT::new(sigma, gamma).expect("the figure's own parameters")
-}
-
-fn slopes(fixed: &str, row: &Row) -> Panel {
-    let x = Axis::linear("slope x (slope y = 0)", -8.0, 8.0);
-    let curves = row.iter().map(|(key, name, t)| curve(*key, name.clone(), &x, |x| t.p22(x, 0.0)));
-    let curves: Vec<Curve> = curves.collect();
-    Panel {
-        title: format!("Density of slopes, {fixed}"),
-        y: Axis::log("P22", 1e-8, 20.0),
-        x,
-        curves,
-        marks: Vec::new(),
-    }
-}
-
-fn masking(fixed: &str, row: &Row) -> Panel {
-    let x = Axis::linear("θ in degrees", 0.0, 90.0);
-    let g1 = |t: &StudentT, theta: f64| {
+    let p22 = |of: &StudentT, x: f64| of.p22(x, 0.0);
+    let g1 = |of: &StudentT, theta: f64| {
         let (sin, cos) = theta.to_radians().sin_cos();
-        t.g1(DVec3::new(sin, 0.0, cos))
+        of.g1(DVec3::new(sin, 0.0, cos))
     };
-    let curves = row.iter().map(|(key, name, t)| curve(*key, name.clone(), &x, |x| g1(t, x)));
-    let curves: Vec<Curve> = curves.collect();
-    Panel {
-        title: format!("Masking, {fixed}"),
-        y: Axis::linear("G1", 0.0, 1.05),
-        x,
-        curves,
-        marks: Vec::new(),
-    }
+    let panels = rows.iter().flat_map(|(fixed, row)| {
+        let curves = |x: &Axis, f: fn(&StudentT, f64) -> f64| {
+            let of = row.iter().map(|(key, name, of)| curve(*key, name, x, |at| f(of, at)));
+            of.collect::<Vec<_>>()
+        };
+        let slopes = Axis::linear("slope x (slope y = 0)", -8.0, 8.0);
+        let angles = Axis::linear("θ in degrees", 0.0, 90.0);
+        let [of_slopes, of_angles] = [curves(&slopes, p22), curves(&angles, g1)];
+        let density = format!("Density of slopes, {fixed}");
+        let masking = format!("Masking, {fixed}");
+        [
+            Panel::new(density, slopes, Axis::log("P22", 1e-8, 20.0), of_slopes),
+            Panel::new(masking, angles, Axis::linear("G1", 0.0, 1.05), of_angles),
+        ]
+    });
+    Figure::new(panels)
 }

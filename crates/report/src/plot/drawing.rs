@@ -1,8 +1,8 @@
-//! A page as a list of shapes, whatever the format that it is written in.
+//! A drawing as a list of shapes, whatever the format that it is written in.
 
-use super::ink::{Color, Dash};
+use super::ink::{BLACK, Color, Dash};
 
-/// A point of the page, in pixels from its left upper corner.
+/// A point of a drawing, in pixels from its left upper corner.
 pub(super) type At = [f64; 2];
 
 /// Which part of a text stands at its point.
@@ -13,31 +13,41 @@ pub(super) enum Anchor {
     End,
 }
 
-/// One thing on the page.
+/// One thing that is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Shape {
     /// A line through points.
     Line { points: Vec<At>, color: Color, width: f64, dash: Dash },
     /// A filled polygon.
     Area { corners: Vec<At>, color: Color },
-    /// A circle, filled or not.
-    Circle { center: At, radius: f64, color: Color, filled: bool },
     /// Pixels line by line, `columns` of them in each, over a rectangle.
     Image { corner: At, size: At, columns: usize, pixels: Vec<Color> },
     /// A text; `at` is on its baseline. Turned, it is read upwards.
     Text { at: At, text: String, size: f64, anchor: Anchor, turned: bool, color: Color },
 }
 
-/// A page: its size in pixels and what is on it, in order of drawing.
+/// A drawing: its size in pixels and what is on it, in order. It is written as SVG and as PNG.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Canvas {
+pub struct Drawing {
     pub(super) size: At,
     pub(super) shapes: Vec<Shape>,
 }
 
-impl Canvas {
+impl Drawing {
+    pub(super) fn new(size: At) -> Self {
+        Self { size, shapes: Vec::new() }
+    }
+
     pub(super) fn line(&mut self, points: Vec<At>, color: Color, width: f64, dash: Dash) {
         self.shapes.push(Shape::Line { points, color, width, dash });
+    }
+
+    pub(super) fn area(&mut self, corners: Vec<At>, color: Color) {
+        self.shapes.push(Shape::Area { corners, color });
+    }
+
+    pub(super) fn image(&mut self, corner: At, size: At, columns: usize, pixels: Vec<Color>) {
+        self.shapes.push(Shape::Image { corner, size, columns, pixels });
     }
 
     pub(super) fn text(&mut self, at: At, text: &str, size: f64, anchor: Anchor, color: Color) {
@@ -46,18 +56,17 @@ impl Canvas {
     }
 
     pub(super) fn turned_text(&mut self, at: At, text: &str, size: f64) {
-        let (text, color, anchor) = (text.to_owned(), super::ink::BLACK, Anchor::Middle);
+        let (text, color, anchor) = (text.to_owned(), BLACK, Anchor::Middle);
         self.shapes.push(Shape::Text { at, text, size, anchor, turned: true, color });
     }
 }
 
-impl Dash {
-    /// Lengths of dashes and gaps in turn, in widths of the line; none if there are no gaps.
-    pub(super) fn lengths(self) -> &'static [f64] {
-        match self {
-            Self::Solid => &[],
-            Self::Dashed => &[4.0, 2.5],
-            Self::Dotted => &[1.2, 1.8],
-        }
-    }
+/// A circle as a closed line; its sides are a pixel long at the radii of points and rings.
+pub(super) fn circle([x, y]: At, radius: f64) -> Vec<At> {
+    const SIDES: u32 = 24;
+    let corner = |i: u32| {
+        let (sin, cos) = libm::sincos(f64::from(i) * std::f64::consts::TAU / f64::from(SIDES));
+        [x + radius * cos, y + radius * sin]
+    };
+    (0..=SIDES).map(corner).collect()
 }
