@@ -1,6 +1,6 @@
 //! Run time against error, with the Pareto front: no rival is both faster and more accurate.
 
-use microfacet_report::plot::{Axis, Curve, Dash, Figure, Key, Mark, Method, Panel};
+use microfacet_report::plot::{Axis, Curve, Dash, Figure, Key, Mark, Panel};
 
 use crate::rows::{Quantity, Row};
 use crate::settings::GAMMA;
@@ -44,7 +44,7 @@ fn panel(title: &str, y_label: &str, rows: &[&Row]) -> Panel {
     let front = front(own);
     let steps = front.windows(2).flat_map(|pair| [pair[0], (pair[1].0, pair[0].1), pair[1]]);
     let name = format!("nothing is faster and more accurate, γ = {GAMMA}");
-    let front = Curve::new(Key::Method(Method::Other), name, steps).dashed(Dash::Dashed);
+    let front = Curve::new(Key::OTHER, name, steps).dashed(Dash::Dashed);
     // Room for names to the right.
     let x = axis("ns a call", marks.iter().map(|mark| mark.at.0), [1.5, 4.0]);
     let y = axis(y_label, marks.iter().map(|mark| mark.at.1), [2.0, 2.0]);
@@ -55,7 +55,7 @@ fn mark(row: &Row, at: (f64, f64)) -> Mark {
     let ours = row.name.starts_with("table");
     let exact = if row.error_max.is_some() { "" } else { " (exact)" };
     Mark {
-        key: Key::Method(if ours { Method::Table } else { Method::Other }),
+        key: if ours { Key::TABLE } else { Key::OTHER },
         name: format!("{}{exact}", row.name),
         at,
         filled: row.gamma == GAMMA,

@@ -1,7 +1,7 @@
 //! The figures as drawings.
 
 use microfacet_report::plot::{
-    Axis, Content, Curve, Dash, Figure, Key, Method as Plotted, Panel, PlotError, Sheet, Tile,
+    Axis, Content, Curve, Dash, Figure, Key, Panel, PlotError, Sheet, Tile,
 };
 
 use super::Paper;
@@ -109,7 +109,7 @@ impl Paper {
 
     /// With what the paper states.
     fn over_hemisphere(&self, title: String, curves: Vec<Curve>) -> Panel {
-        let (key, points) = (Key::Method(Plotted::Other), SHAPES.map(|gamma| (gamma, 1e2 * CLAIM)));
+        let (key, points) = (Key::OTHER, SHAPES.map(|gamma| (gamma, 1e2 * CLAIM)));
         let claim = Curve::new(key, "0.7 %, as the paper has it", points).dashed(Dash::Dotted);
         let x = Axis::log("γ", SHAPES[0], SHAPES[1]);
         let y = Axis::linear("per cent", 0.0, 0.8);

@@ -1,6 +1,5 @@
 //! The methods that are timed: their names, and what they are in drawings.
 
-use microfacet_report::plot;
 use microfacet_report::plot::Key;
 use serde::Serialize;
 
@@ -58,6 +57,23 @@ impl Method {
     /// Whether it has one shape, which stands for all in a comparison.
     pub(super) const fn is_reference(self) -> bool {
         matches!(self, Self::Ggx | Self::Beckmann)
+    }
+
+    pub(super) fn key(self) -> Key {
+        // In the order of the methods, as the figures of the printed formulas have them.
+        const COLORS: [Key; 10] = [
+            Key::Nth(1),
+            Key::Nth(8),
+            Key::Nth(4),
+            Key::Nth(2),
+            Key::OTHER,
+            Key::TABLE,
+            Key::Nth(5),
+            Key::Nth(6),
+            Key::Nth(3),
+            Key::Nth(7),
+        ];
+        COLORS[self as usize]
     }
 }
 

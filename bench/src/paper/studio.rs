@@ -9,6 +9,7 @@
 //! World coordinates are right-handed, y up. The sphere has radius 1 about the origin.
 
 use glam::{DVec3, Mat3, Vec3};
+use microfacet_report::tangent_frame;
 use microfacet_sampler::MicrofacetDistribution as _;
 use microfacet_sampler::{ConductorFresnel, StudentT};
 use microfacet_study::spheres::sky::Sky;
@@ -46,7 +47,7 @@ impl<G: Fn(Vec3) -> f32> Metal<G> {
         // Normals are drawn with G1 of the tables, whatever form the metal has.
         let drawn = self.lobe.g1(v);
         let share = (self.g1)(v) / drawn;
-        // The estimate at a light and its half vector is the same whoever drew them.
+        // The estimate at a light and its half vector does not depend on how they were drawn.
         let estimate = |l: Vec3, m: Vec3| {
             let (radiance, of_lamps) = sky.seen(*frame * l);
             let density = self.lobe.d(m) * drawn / (4.0 * v.z);
@@ -107,8 +108,7 @@ impl Film {
                     return DVec3::ZERO;
                 };
                 let n = camera * hit;
-                let tangent = Vec3::Y.cross(n).normalize_or(Vec3::X);
-                let frame = Mat3::from_cols(tangent, n.cross(tangent), n);
+                let frame = tangent_frame(n);
                 let v = frame.transpose() * camera.z_axis;
                 metal.radiance(sky, &frame, v, [[c, d], [e, f]]).as_dvec3()
             };

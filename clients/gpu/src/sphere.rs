@@ -79,16 +79,10 @@ fn random(state: &mut u32) -> f32 {
     (((word >> 22) ^ word) >> 8) as f32 / 16_777_216.0
 }
 
-/// A tangent frame (Duff et al. 2017), as columns.
+/// A tangent frame, as columns; glam and the shader both have that of Duff et al. 2017.
 fn frame(n: Vec3) -> Mat3 {
-    let s = if n.z >= 0.0 { 1.0 } else { -1.0 };
-    let a = -1.0 / (s + n.z);
-    let b = n.x * n.y * a;
-    Mat3::from_cols(
-        Vec3::new(1.0 + s * n.x * n.x * a, s * b, -s * n.x),
-        Vec3::new(b, s + n.y * n.y * a, -n.y),
-        n,
-    )
+    let (x, y) = n.any_orthonormal_pair();
+    Mat3::from_cols(x, y, n)
 }
 
 fn by_crate(scene: &Scene) -> Vec<Vec3> {

@@ -13,7 +13,7 @@ use microfacet_tables::MaterialEntry;
 use super::Source;
 use super::drawing::{plot, symbols, unbroken};
 use super::subjects::{SHOWN, Shown, Subjects};
-use crate::plot::{Axis, Curve, Dash, Key, Method, Panel};
+use crate::plot::{Axis, Curve, Dash, Key, Panel};
 use crate::words::material::material;
 use crate::words::{number, range};
 
@@ -23,17 +23,28 @@ const VIEWS: u32 = 45;
 /// The view of which captions state the numbers, in degrees.
 const STATED: f64 = 80.0;
 
-/// A lobe that is drawn.
 struct Line {
     name: String,
     key: Key,
     dash: Dash,
-    lobe: Lobe,
-    /// E, of the round lobe of √(σx σy); `None` where no table covers it.
-    albedo: Option<Albedo>,
+    /// Of a view: G1; and E, of the round lobe of √(σx σy), where a table covers it.
+    quantities: [Option<Quantity>; 2],
 }
 
+type Quantity = Box<dyn Fn(Vec3) -> f32>;
+
+/// The titles and axes of the panels, one a quantity.
+const PANELS: [[&str; 2]; 2] = [
+    ["Masking", "G1, the share of facets that is seen"],
+    ["Directional albedo, F = 1", "E, the share of light that returns"],
+];
+
 impl Line {
+    fn new(name: String, key: Key, dash: Dash, lobe: Lobe, albedo: Option<Albedo>) -> Self {
+        let e = albedo.map(|albedo| -> Quantity { Box::new(move |v| albedo.albedo(v)) });
+        Self { name, key, dash, quantities: [Some(Box::new(move |v| lobe.g1(v))), e] }
+    }
+
     /// A lobe of the family, in its own colour.
     fn of_family(set: &Tables, shown: &Shown, gamma: f64) -> Option<Self> {
         let lobe = set.lobe(shown.sigma, gamma).ok()?;
@@ -43,40 +54,43 @@ impl Line {
             f64::INFINITY => {
                 ("Beckmann".into(), Key::Kind(DistributionKind::Beckmann), Dash::Dotted)
             }
-            _ => (format!("γ = {}", number(gamma)), Key::Method(Method::Table), Dash::Solid),
+            _ => (format!("γ = {}", number(gamma)), Key::TABLE, Dash::Solid),
         };
         // The lobe itself is drawn without gaps, whatever it is.
         let dash = if gamma == shown.gamma { Dash::Solid } else { dash };
-        Some(Self { name, key, dash, lobe, albedo })
+        Some(Self::new(name, key, dash, lobe, albedo))
     }
 
     /// A lobe with tables of its own, or tilted.
     fn of_material(set: &Tables, entry: &MaterialEntry) -> Option<Self> {
         let lobe = set.material(&entry.name).ok()?;
         let albedo = set.material_albedo(&entry.name).ok();
-        let (key, dash) = (Key::Method(Method::Table), Dash::Solid);
         let tilted = || format!("γ = {}, tilted", symbols(&range(entry.lobe.gamma)));
         let name = entry.lobe.distribution.clone().unwrap_or_else(tilted);
-        Some(Self { name, key, dash, lobe, albedo })
+        Some(Self::new(name, Key::TABLE, Dash::Solid, lobe, albedo))
     }
 
-    fn g1(&self, v: Vec3) -> Option<f64> {
-        Some(f64::from(self.lobe.g1(v)))
+    fn curve(&self, quantity: usize) -> Option<Curve> {
+        let of = self.quantities[quantity].as_ref()?;
+        let points = (0..=VIEWS).map(|i| {
+            let degrees = 45.0 * (1.0 - (PI * f64::from(i) / f64::from(VIEWS)).cos());
+            (degrees, f64::from(of(view(degrees))))
+        });
+        Some(Curve::new(self.key, &self.name, points).dashed(self.dash))
     }
 
-    fn albedo(&self, v: Vec3) -> Option<f64> {
-        Some(f64::from(self.albedo.as_ref()?.albedo(v)))
+    /// The quantity at the view that is stated, with the name of the lobe.
+    fn stated(&self, quantity: usize) -> Option<String> {
+        let value = self.quantities[quantity].as_ref()?(view(STATED));
+        Some(format!("{value:.3} ({})", unbroken(&self.name)))
     }
 }
 
-/// A quantity of a lobe and a view.
-type Quantity = fn(&Line, Vec3) -> Option<f64>;
-
-/// What is drawn of each lobe.
-const PANELS: [(&str, &str, Quantity); 2] = [
-    ("Masking", "G1, the share of facets that is seen", Line::g1),
-    ("Directional albedo, F = 1", "E, the share of light that returns", Line::albedo),
-];
+/// A view at this many degrees from the normal, in the azimuth of x.
+fn view(degrees: f64) -> Vec3 {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    Vec3::new(sin as f32, 0.0, cos.max(0.0) as f32)
+}
 
 pub(super) fn section(source: &Source, subjects: &Subjects) -> Markup {
     let set = source.set.clone().or_embedded();
@@ -103,7 +117,7 @@ fn others(set: &Tables) -> Vec<&MaterialEntry> {
     set.provenance().materials.iter().filter(is_other).collect()
 }
 
-/// A lobe of the family beside the two that everybody knows.
+/// A lobe of the family beside GGX and Beckmann.
 fn of_family(set: &Tables, shown: &Shown) -> Markup {
     let beside = [2.0, f64::INFINITY].into_iter().filter(|&gamma| gamma != shown.gamma);
     let gammas = std::iter::once(shown.gamma).chain(beside);
@@ -119,7 +133,6 @@ fn of_family(set: &Tables, shown: &Shown) -> Markup {
     figure(&shown.name, &lines, &what)
 }
 
-/// A lobe alone.
 fn of_material(set: &Tables, entry: &MaterialEntry) -> Markup {
     let Some(line) = Line::of_material(set, entry) else { return html! {} };
     let what = html! {
@@ -131,20 +144,19 @@ fn of_material(set: &Tables, entry: &MaterialEntry) -> Markup {
 
 /// The plots of some lobes, the first of which it is about.
 fn figure(name: &str, lines: &[Line], what: &Markup) -> Markup {
-    let drawn = PANELS.map(|(title, label, quantity)| {
-        let curves: Vec<Curve> = lines.iter().filter_map(|line| curve(line, quantity)).collect();
-        let numbers: Vec<String> = lines.iter().filter_map(|line| at(line, quantity)).collect();
-        (title, label, curves, numbers.join(", "))
+    let drawn: [(Vec<Curve>, String); 2] = std::array::from_fn(|i| {
+        let stated: Vec<String> = lines.iter().filter_map(|line| line.stated(i)).collect();
+        (lines.iter().filter_map(|line| line.curve(i)).collect(), stated.join(", "))
     });
     let views = || Axis::linear("θ, the angle of the view, degrees", 0.0, 90.0);
     html! {
         figure {
             div.plots {
-                @for (title, label, curves, numbers) in &drawn {
+                @for ([title, label], (curves, stated)) in PANELS.iter().zip(&drawn) {
                     @if !curves.is_empty() {
                         (plot(
                             Panel::new(*title, views(), Axis::linear(*label, 0.0, 1.0), curves.clone()),
-                            &format!("{label}, of {name}. Seen at {STATED}°: {numbers}."),
+                            &format!("{label}, of {name}. Seen at {STATED}°: {stated}."),
                         ))
                     }
                 }
@@ -152,38 +164,17 @@ fn figure(name: &str, lines: &[Line], what: &Markup) -> Markup {
             figcaption {
                 (what)
                 "Seen at " (STATED) "°, "
-                @for (i, (_, label, curves, numbers)) in drawn.iter().enumerate() {
+                @for (i, ([_, label], (curves, stated))) in PANELS.iter().zip(&drawn).enumerate() {
                     @let quantity = label.split(',').next().unwrap_or_default();
                     @if i > 0 { "; " }
                     @if curves.is_empty() {
                         "no table covers " (quantity)
                     } @else {
-                        (quantity) " is " (numbers)
+                        (quantity) " is " (stated)
                     }
                 }
                 "."
             }
         }
     }
-}
-
-/// A view at this many degrees from the normal, in the azimuth of x.
-fn view(degrees: f64) -> Vec3 {
-    let (sin, cos) = degrees.to_radians().sin_cos();
-    Vec3::new(sin as f32, 0.0, cos.max(0.0) as f32)
-}
-
-fn curve(line: &Line, quantity: Quantity) -> Option<Curve> {
-    let point = |i: u32| {
-        let degrees = 45.0 * (1.0 - (PI * f64::from(i) / f64::from(VIEWS)).cos());
-        Some((degrees, quantity(line, view(degrees))?))
-    };
-    let points = (0..=VIEWS).map(point).collect::<Option<Vec<_>>>()?;
-    Some(Curve::new(line.key, &line.name, points).dashed(line.dash))
-}
-
-/// The quantity at the view that is stated, with the name of the lobe.
-fn at(line: &Line, quantity: Quantity) -> Option<String> {
-    let value = quantity(line, view(STATED))?;
-    Some(format!("{value:.3} ({})", unbroken(&line.name)))
 }

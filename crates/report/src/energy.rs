@@ -11,7 +11,6 @@ use super::subjects::{Shown, Subjects};
 use super::{ReportError, Source};
 use crate::plot::{Axis, Curve, Dash, Key, Panel};
 
-/// Cosines of the views.
 const VIEWS: [f64; 21] = [
     1e-4, 0.01, 0.02, 0.03, 0.05, 0.07, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.6, 0.7,
     0.8, 0.9, 0.95, 1.0,
@@ -75,7 +74,6 @@ pub(super) fn section(
     })
 }
 
-/// The furnaces of one lobe.
 fn drawn(set: &Tables, shown: &Shown, rows: &[Furnace]) -> Markup {
     let curve = |&(name, place, dash, share): &(&str, usize, Dash, Share)| {
         let points = rows.iter().map(|row| (row.cos_theta, share(row)));

@@ -1,4 +1,4 @@
-//! The head of the page, with what a reader wants to know first, and its foot.
+//! The head of the page, with the size and the shapes of the set, and its foot.
 
 use maud::{Markup, html};
 
@@ -54,7 +54,6 @@ fn facts(source: &Source, subjects: &Subjects) -> Vec<(&'static str, String)> {
     facts
 }
 
-/// Where the page comes from.
 pub(super) fn foot(source: &Source) -> Markup {
     let origin = source.set.provenance();
     html! {

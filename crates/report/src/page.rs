@@ -13,9 +13,7 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
 
 /// A part of the page with a heading of its own.
 struct Section {
-    /// Its anchor.
     id: &'static str,
-    /// Its heading.
     title: &'static str,
     /// What it shows, in a sentence or two.
     lead: &'static str,

@@ -19,7 +19,7 @@ pub use axis::Axis;
 pub use drawing::Drawing;
 pub use figures::{FIGURES, Listed, figure};
 pub use heat::{HeatMap, bar};
-pub use ink::{Dash, Key, Method};
+pub use ink::{Dash, Key};
 pub use sheet::{Content, Sheet, Tile};
 
 /// A curve with its name in the legend.
@@ -198,7 +198,7 @@ mod tests {
     #[test]
     fn names_of_points_do_not_overlap() {
         let mark = |i: i32| Mark {
-            key: Key::Method(Method::Table),
+            key: Key::TABLE,
             name: format!("rival {i}"),
             at: (0.98, 10.0 + 0.1 * f64::from(i)),
             filled: true,

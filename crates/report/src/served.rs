@@ -12,19 +12,16 @@ use crate::words::material::fresnel;
 use crate::words::verdict::albedo_reason;
 use crate::words::{number, range};
 
-/// A material and what serves it.
 #[derive(Clone, Debug)]
 pub(super) struct Served {
     pub(super) name: String,
     pub(super) sigma: String,
-    /// γ, or the distribution.
     pub(super) shape: String,
     pub(super) masking: String,
     pub(super) fresnel: String,
     /// Masking and visible normals.
     pub(super) lobe: Part,
     pub(super) albedo: Part,
-    /// Of the tables that it reads.
     pub(super) bytes: usize,
 }
 
@@ -45,7 +42,6 @@ impl Part {
     }
 }
 
-/// The materials of a set, in order.
 pub(super) fn served(set: &Tables) -> Vec<Served> {
     let wishes = wishes(&recipe_of(&set.provenance().materials));
     let default = Tables::embedded();
@@ -109,7 +105,6 @@ fn lobe(set: &Tables, default: &Tables, entry: &MaterialEntry) -> Part {
     }
 }
 
-/// What serves its albedo.
 fn albedo(
     set: &Tables,
     default: &Tables,

@@ -26,7 +26,6 @@ const ROUND: [f64; 40] = [
 const SHAPES: [f64; 6] = [1.501, 1.65, 2.0, 3.0, 5.0, f64::INFINITY];
 const SIGMA: f64 = 0.3;
 
-/// What a page shows of a set.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Subjects {
     /// The shapes γ that the sphere can have, ascending.
@@ -41,26 +40,20 @@ pub(super) struct Subjects {
     pub(super) left_out: usize,
 }
 
-/// A lobe with its name.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Shown {
-    /// Its name.
     pub(super) name: String,
-    /// γ.
     pub(super) gamma: f64,
-    /// σx and σy.
     pub(super) sigma: [f64; 2],
     /// The material of the recipe that it is.
     pub(super) entry: Option<MaterialEntry>,
 }
 
-/// γ in words.
 pub(super) fn shape(gamma: f64) -> String {
     unbroken(&format!("γ = {}", symbols(&number(gamma))))
 }
 
 impl Subjects {
-    /// Of a set.
     pub(super) fn of(set: &Tables) -> Self {
         let materials: Vec<&MaterialEntry> =
             set.provenance().materials.iter().filter(|entry| is_shown(set, entry)).collect();

@@ -11,12 +11,18 @@ use microfacet_validate::record::{Record, Returned, identity};
 
 use super::{Source, overview, page};
 
-/// Draft tables of a shape, and GGX in closed form.
-fn set() -> Tables {
-    let recipe = "[[material]]\nname = \"a\"\nsigma = 0.3\ngamma = 3\n\
-                  [[material]]\nname = \"b\"\nsigma = [0.1, 0.4]\ngamma = 2\nfresnel = \"mirror\"\n";
+/// The draft tables of a recipe.
+pub(crate) fn baked(recipe: &str) -> Tables {
     let plan = Plan::new(&Scene::from_recipe_str(recipe).unwrap(), Options::default()).unwrap();
     bake(&plan, Target::Quality(Quality::Draft, Default::default())).unwrap().set
+}
+
+/// Tables of a shape, and GGX in closed form.
+fn set() -> Tables {
+    baked(
+        "[[material]]\nname = \"a\"\nsigma = 0.3\ngamma = 3\n\
+         [[material]]\nname = \"b\"\nsigma = [0.1, 0.4]\ngamma = 2\nfresnel = \"mirror\"\n",
+    )
 }
 
 /// A page of which every text that a file can state begins with `mark`.

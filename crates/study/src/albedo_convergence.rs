@@ -12,7 +12,7 @@ use microfacet_model::{AlbedoIntegrator, Shape};
 use microfacet_sampler::{Masking, MicrofacetDistribution, Tables};
 use rand::{RngExt, SeedableRng};
 
-use crate::Outcome;
+use crate::{Outcome, print_head};
 
 /// σ, γ and cos θ_v.
 const VIEWS: [(f64, f64, f64); 6] = [
@@ -27,9 +27,7 @@ const VIEWS: [(f64, f64, f64); 6] = [
 /// Prints what the module's page says.
 pub fn run(_: &[String]) -> Outcome {
     let truth: Vec<f64> = VIEWS.iter().map(|&view| quadrature(view, 1e-13)).collect();
-    println!(
-        "| method | nodes or samples | RMS error | time of one albedo, ms |\n| --- | --- | --- | --- |"
-    );
+    print_head(&["method", "nodes or samples", "RMS error", "time of one albedo, ms"]);
     for tolerance in [1e-3, 1e-5, 1e-6, 1e-7, 1e-9, 1e-11] {
         let (error, time) = timed(&truth, |view| quadrature(view, tolerance));
         println!("| quadrature | tolerance {tolerance:.0e} | {error:.1e} | {time:.3} |");

@@ -11,7 +11,7 @@ use microfacet_model::{AlbedoIntegrator, Shape};
 use microfacet_tables::axis::{ViewBlend, even_nodes, lagrange};
 use rayon::prelude::*;
 
-use crate::Outcome;
+use crate::{Outcome, print_head};
 
 /// The coordinate of the view, t(μ), ascending to 1 at normal incidence.
 enum Coordinate {
@@ -82,9 +82,7 @@ const PARTS: [Part; 4] = [
 
 /// Prints what the module's page says.
 pub fn run(_: &[String]) -> Outcome {
-    print!("| coordinate | nodes |");
-    PARTS.iter().for_each(|part| print!(" {} |", part.0));
-    println!("\n| --- | --- |{}", " --- |".repeat(PARTS.len()));
+    print_head(&[&["coordinate", "nodes"], &PARTS.map(|part| part.0)[..]].concat());
     let materials: Vec<Material> =
         [1.501, 1.505, 1.52, 1.56, 1.65, 2.0, 3.0, 8.0, 50.0, f64::INFINITY]
             .into_iter()

@@ -15,7 +15,7 @@ use microfacet_tables::{
     Axis, Errors, Interpolation, Interval, Mapping, Precision, Reflectance, Roughness, Side,
 };
 
-use crate::{Outcome, baked};
+use crate::{Outcome, baked, print_head};
 
 /// Error aimed at in a node. Estimates are careful: at places throughout the domain even 1e-2 gives
 /// values that are right to 2e-4.
@@ -123,8 +123,7 @@ fn errors(spec: &AlbedoSpec) -> Result<String, AlbedoError> {
 /// Prints what the module's page says.
 pub fn run(arguments: &[String]) -> Outcome {
     let row: Option<usize> = arguments.first().and_then(|row| row.parse().ok());
-    println!("| covered | γ × σ × η | views | bytes | thin side | dense side |");
-    println!("| --- | --- | --- | --- | --- | --- |");
+    print_head(&["covered", "γ × σ × η", "views", "bytes", "thin side", "dense side"]);
     let rows = DESIGNS.iter().enumerate().filter(|(i, _)| row.is_none_or(|row| row == i + 1));
     for (_, design) in rows {
         let specs = [Side::Thin, Side::Dense].map(|side| design.spec(side));

@@ -11,7 +11,7 @@ use microfacet_sampler::Masking;
 use microfacet_tables::axis::CriticalBlend;
 use microfacet_tables::{Axis, Interpolation, Mapping, Precision, Quantity, Reflectance, Side};
 
-use crate::{Outcome, baked};
+use crate::{Outcome, baked, print_head};
 
 const GAMMAS: [f64; 5] = [1.501, 1.55, 1.7, 1.9, 3.0];
 const SIGMAS: [f64; 3] = [0.1, 0.3, 1.0];
@@ -49,12 +49,12 @@ fn worst(gamma: f64, views: (CriticalBlend, usize)) -> Result<String, AlbedoErro
 
 /// Prints what the module's page says.
 pub fn run(_: &[String]) -> Outcome {
-    println!("| γ | two parts, 65 views: reflected, transmitted | three parts, 67 views |");
-    println!("| --- | --- | --- |");
+    print_head(&["γ", "two parts, 65 views: reflected, transmitted", "three parts, 67 views"]);
     for gamma in GAMMAS {
         println!("| {gamma} | {} | {} |", worst(gamma, VIEWS[0])?, worst(gamma, VIEWS[1])?);
     }
-    println!("\n| root, sharp, between | γ = 1.55: reflected, transmitted |\n| --- | --- |");
+    println!();
+    print_head(&["root, sharp, between", "γ = 1.55: reflected, transmitted"]);
     let own = CriticalBlend::UPRIGHT;
     let beside = [
         own,

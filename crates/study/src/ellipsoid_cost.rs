@@ -26,10 +26,8 @@ fn inputs() -> Vec<(Vec3, [f32; 2])> {
     let step = |i: usize, a: f64| (0.5 + a * i as f64).fract();
     (0..4096)
         .map(|i| {
-            let (z, phi) = (
-                0.05 + 0.95 * step(i, 0.8566748838545),
-                std::f64::consts::TAU * step(i, 0.733891856627),
-            );
+            let z = 0.05 + 0.95 * step(i, 0.8566748838545);
+            let phi = std::f64::consts::TAU * step(i, 0.733891856627);
             let r = (1.0 - z * z).sqrt();
             let v = DVec3::new(r * phi.cos(), r * phi.sin(), z).as_vec3();
             (v, [step(i, 0.628706721216) as f32, step(i, 0.538597257213) as f32])
@@ -75,6 +73,11 @@ pub fn run(_: &[String]) -> Outcome {
     Ok(())
 }
 
+/// The density of a normal that is drawn.
+fn with_density(lobe: &impl MicrofacetDistribution) -> impl Fn(Vec3, [f32; 2]) -> f32 {
+    |v, u| lobe.visible_normal_pdf(v, lobe.sample_visible_normal(v, u))
+}
+
 type Inputs = [(Vec3, [f32; 2])];
 
 fn compare(
@@ -91,18 +94,8 @@ fn compare(
             || round(inputs, |v, u| untilted.sample_visible_normal(v, u).z),
             || round(inputs, |v, u| skewed.sample_visible_normal(v, u).z),
         );
-        let [c, d] = least(
-            || {
-                round(inputs, |v, u| {
-                    untilted.visible_normal_pdf(v, untilted.sample_visible_normal(v, u))
-                })
-            },
-            || {
-                round(inputs, |v, u| {
-                    skewed.visible_normal_pdf(v, skewed.sample_visible_normal(v, u))
-                })
-            },
-        );
+        let (of_untilted, of_skewed) = (with_density(&untilted), with_density(&skewed));
+        let [c, d] = least(|| round(inputs, &of_untilted), || round(inputs, &of_skewed));
         println!("{gamma:<8} {a:>6.1} {b:>10.1} {:>6.2} {c:>21.1} {d:>10.1} {:>6.2}", b / a, d / c);
     }
     Ok(())

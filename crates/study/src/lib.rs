@@ -86,6 +86,11 @@ pub const STUDIES: [Study; 18] = [
     study("table_design", "designs of the table of visible slopes", table_design::run),
 ];
 
+/// Prints the head of a table in Markdown.
+fn print_head(columns: &[&str]) {
+    println!("| {} |\n|{}", columns.join(" | "), " --- |".repeat(columns.len()));
+}
+
 /// The albedo tables of a specification, with their certificates.
 fn baked(spec: &AlbedoSpec) -> Result<Vec<Table>, AlbedoError> {
     let stage = Stage::unwatched();

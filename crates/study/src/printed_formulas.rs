@@ -7,7 +7,7 @@
 use microfacet_model::Shape;
 use microfacet_model::printed::{FORMS, Form};
 
-use crate::Outcome;
+use crate::{Outcome, print_head};
 
 const GAMMAS: [f64; 12] = [1.51, 1.6, 2.0, 2.5, 3.0, 10.0, 10.5, 40.0, 40.5, 100.0, 150.0, 1000.0];
 
@@ -18,17 +18,13 @@ fn cotangents() -> impl Iterator<Item = f64> {
 
 /// Prints what the module's page says.
 pub fn run(_: &[String]) -> Outcome {
-    println!(
-        "| eq. | gamma | largest error of G1 | at z | largest G1 - 1 | smallest G1 | no digit of lambda from z |"
-    );
-    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    let figures = ["largest error of G1", "at z", "largest G1 - 1", "smallest G1"];
+    print_head(&[&["eq.", "gamma"], &figures[..], &["no digit of lambda from z"]].concat());
     for Form { equation, name, lambda } in FORMS {
         for gamma in GAMMAS {
             if lambda(gamma, 1.0).is_some() {
-                println!(
-                    "| {equation}, {name} | {gamma} | {} |",
-                    row(gamma, |z| lambda(gamma, z).unwrap_or(f64::NAN))
-                );
+                let row = row(gamma, |z| lambda(gamma, z).unwrap_or(f64::NAN));
+                println!("| {equation}, {name} | {gamma} | {row} |");
             }
         }
     }

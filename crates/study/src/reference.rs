@@ -29,15 +29,12 @@ pub fn run(arguments: &[String]) -> Outcome {
 
 /// Columns of a row's inputs.
 const INPUTS: &str = "case,sigma_x,sigma_y,gamma,masking,vx,vy,vz,u1,u2,mx,my,mz,lx,ly,lz";
-/// Columns of what follows from them, each first as `…_exact`, then as `…_table`.
-const RESULTS: [&str; COUNT] = [
+/// Columns of what follows from them, each first as `…_exact`, then as `…_table`: of directions, and
+/// of albedos.
+const RESULTS: [&str; 14] = [
     "g1", "g2", "d", "nx", "ny", "nz", "density", "e", "scale", "bias", "f82", "e_avg", "bias_avg",
     "f82_avg",
 ];
-/// How many there are: of directions, and of albedos.
-const COUNT: usize = DIRECTIONAL + ALBEDOS;
-const DIRECTIONAL: usize = 7;
-const ALBEDOS: usize = 7;
 
 /// Error aimed at by the quadrature of exact albedos.
 const TOLERANCE: f64 = 1e-11;
@@ -53,7 +50,7 @@ pub fn text() -> String {
         write!(text, "{case},{sx:?},{sy:?},{gamma:?},{},", masking.name()).expect("memory");
         let inputs = [v.to_array(), [u1, u2, m.x], [m.y, m.z, row.light().x]].concat();
         text.push_str(&joined(inputs.into_iter().chain([row.light().y, row.light().z]).map(Some)));
-        let exact = truth.of(&row).map(|x| x.map(Digits));
+        let exact = truth.of(&row).into_iter().map(|x| x.map(Digits));
         writeln!(text, ",{},{}", joined(exact), joined(read(&tables, &row))).expect("memory");
     }
     text
@@ -111,7 +108,7 @@ impl Row {
 // What the run-time crate says.
 
 /// The results of a row from tables.
-fn read(tables: &Tables, row: &Row) -> [Option<f32>; COUNT] {
+fn read(tables: &Tables, row: &Row) -> Vec<Option<f32>> {
     let material = tables.student_t(row.sigma, row.gamma).expect("embedded tables cover it");
     let n = material.sample_visible_normal(row.v, row.u);
     let directional = [
@@ -123,12 +120,11 @@ fn read(tables: &Tables, row: &Row) -> [Option<f32>; COUNT] {
         n.z,
         material.visible_normal_pdf(row.v, row.m),
     ];
-    let albedo = row.round_sigma().map(|sigma| read_albedo(tables, sigma, row));
-    all(directional, albedo)
+    all(directional, row.round_sigma().map(|sigma| read_albedo(tables, sigma, row)))
 }
 
 /// E, scale, bias and F82 of the view, and the averages of E, bias and F82.
-fn read_albedo(tables: &Tables, sigma: f64, row: &Row) -> [f32; ALBEDOS] {
+fn read_albedo(tables: &Tables, sigma: f64, row: &Row) -> [f32; 7] {
     let (gamma, masking) = (row.gamma, row.masking);
     let albedo = tables.albedo(sigma, gamma, masking).expect("embedded tables cover it");
     let average = tables.average_moments(sigma, gamma, masking).expect("embedded tables cover it");
@@ -137,12 +133,9 @@ fn read_albedo(tables: &Tables, sigma: f64, row: &Row) -> [f32; ALBEDOS] {
     [e, scale, bias, f82, average.total(), average.bias, average.f82]
 }
 
-fn all<T: Copy>(directional: [T; DIRECTIONAL], albedo: Option<[T; ALBEDOS]>) -> [Option<T>; COUNT] {
-    let albedo = albedo.map_or([None; ALBEDOS], |albedo| albedo.map(Some));
-    let mut all = [None; COUNT];
-    all[..DIRECTIONAL].copy_from_slice(&directional.map(Some));
-    all[DIRECTIONAL..].copy_from_slice(&albedo);
-    all
+fn all<T: Copy>(directional: [T; 7], albedo: Option<[T; 7]>) -> Vec<Option<T>> {
+    let albedo = albedo.map_or([None; 7], |albedo| albedo.map(Some));
+    [directional.map(Some), albedo].concat()
 }
 
 // What the model says.
@@ -155,8 +148,7 @@ struct Truth {
 }
 
 impl Truth {
-    /// The exact results of a row.
-    fn of(&mut self, row: &Row) -> [Option<f64>; COUNT] {
+    fn of(&mut self, row: &Row) -> Vec<Option<f64>> {
         let [sx, sy] = row.sigma.map(f64::from);
         let model = StudentT::new([sx, sy], row.gamma).expect("a Student-t");
         let (v, m, l) = (row.v.as_dvec3(), row.m.as_dvec3(), row.light().as_dvec3());
@@ -179,7 +171,7 @@ impl Truth {
         all
     }
 
-    fn albedo(&mut self, model: &StudentT, sigma: f64, row: &Row) -> [f64; ALBEDOS] {
+    fn albedo(&mut self, model: &StudentT, sigma: f64, row: &Row) -> [f64; 7] {
         let bits = row.gamma.to_bits();
         let prepare = || AlbedoIntegrator::new(*model.shape(), TOLERANCE);
         let integrator = self.integrators.entry(bits).or_insert_with(prepare);
@@ -204,7 +196,6 @@ const PEELED_BELOW: f64 = 1.8;
 const BOTH: [Masking; 2] = [Uncorrelated, HeightCorrelated];
 const INFINITE: f64 = f64::INFINITY;
 
-/// All rows, in the order of the file.
 fn rows() -> Vec<Row> {
     let mut rows = Rows::default();
     // Views and normals in the middle of everything.
@@ -327,7 +318,6 @@ impl Rows {
         self.push(Row { v, ..self.next(case, [sigma; 2], gamma, masking) });
     }
 
-    /// Equal roughnesses, and a view.
     fn seen(&mut self, case: &'static str, sigma: f32, gamma: f64, v: Vec3) {
         self.push(Row { v, ..self.next(case, [sigma; 2], gamma, HeightCorrelated) });
     }

@@ -9,14 +9,14 @@ use microfacet_fit::convert::{Form, Target};
 use microfacet_report::plot;
 use microfacet_report::plot::Curve;
 
-use crate::Outcome;
+use crate::{Outcome, print_head};
 
 /// Prints what the module's page says.
 pub fn run(_: &[String]) -> Outcome {
     println!("Largest values of `plot beckmann-limit` over sigma, in %, after Ribardiere et al.");
     println!("2017, figure 10, with the bounds printed for gamma = 40 and sigma < 1.2:");
-    println!("| distance | γ = 30 | γ = 40 | γ = 50 | γ = 100 | printed | kept at γ = 40 |");
-    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    let shapes = ["γ = 30", "γ = 40", "γ = 50", "γ = 100"];
+    print_head(&[&["distance"], &shapes[..], &["printed", "kept at γ = 40"]].concat());
     for panel in plot::figure("beckmann-limit")?.panels {
         // The last is the bound.
         let highest: Vec<f64> = panel.curves.iter().map(|curve| largest(curve).1).collect();
@@ -40,8 +40,7 @@ pub fn run(_: &[String]) -> Outcome {
 
     println!("\nThe same for the Beckmann of least RMSE to each Blinn-Phong, the Schlick of its");
     println!("m, and the others of least RMSE to it, after the text of Sawicki 2021:");
-    println!("| N | m | blinn-phong | gauss | trowbridge-reitz | schlick | sawicki |");
-    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    print_head(&["N", "m", "blinn-phong", "gauss", "trowbridge-reitz", "schlick", "sawicki"]);
     for n in [10.0, 40.0, 100.0, 1000.0] {
         let blinn_phong = Named { kind: DistributionKind::BlinnPhong, values: vec![n] };
         let beckmann = nearest(&blinn_phong, DistributionKind::Beckmann)?;

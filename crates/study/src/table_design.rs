@@ -14,12 +14,11 @@ use microfacet_tables::axis::half_tangent::{half_tangent, slope_at};
 use microfacet_tables::{Kind, Mapping, Precision};
 use rayon::prelude::*;
 
-use crate::Outcome;
+use crate::{Outcome, print_head};
 
 const VIEWS: usize = 64;
 const NUMBERS: usize = 16;
 
-/// The quantity at a node.
 #[derive(Clone, Copy, Debug)]
 enum Stored {
     /// h = x/(1 + √(1+x²)).
@@ -28,7 +27,6 @@ enum Stored {
     GgxNumber,
 }
 
-/// The coordinate of the view.
 #[derive(Clone, Copy, Debug)]
 enum View {
     Cosine,
@@ -67,10 +65,7 @@ impl Design {
 
     fn restore(&self, shape: &Shape, view: UnitView, value: f64) -> SignedSlope {
         let (sin, cos) = match self.stored {
-            Stored::HalfTangent => {
-                let [x, z] = slope_at(1.0 - value.clamp(-1.0, 1.0));
-                (x, z)
-            }
+            Stored::HalfTangent => slope_at(1.0 - value.clamp(-1.0, 1.0)).into(),
             Stored::GgxNumber => {
                 let d = (value * (1.0 + view.cos) - 1.0).clamp(-1.0, 1.0);
                 let c = (1.0 - d * d).sqrt();
@@ -168,7 +163,8 @@ fn error_between_views(shape: &Shape, axis: HalfTangent, cells: usize, peeled: b
 
 /// Prints [`error_between_views`] with even nodes and with the knots of baked tables.
 fn print_views() {
-    println!("\n| views | nodes | γ: error | | | |\n| --- | --- | --- | --- | --- | --- |");
+    println!();
+    print_head(&["views", "nodes", "γ: error", "", "", ""]);
     for spec in general_set(Level::DEFAULT, Precision::F32) {
         let peeled = spec.kind == Kind::VisibleSlopePeeled;
         let gammas = if peeled { [1.501, 1.51, 1.6, 1.79] } else { [1.8, 1.9, 4.0, f64::INFINITY] };
@@ -187,16 +183,10 @@ fn print_views() {
 
 /// Prints what the module's page says.
 pub fn run(_: &[String]) -> Outcome {
-    println!(
-        "| stored | view axis | u | γ = 1.8 | 2 | 4 | ∞ |\n| --- | --- | --- | --- | --- | --- | --- |"
-    );
+    print_head(&["stored", "view axis", "u", "γ = 1.8", "2", "4", "∞"]);
     for stored in [Stored::HalfTangent, Stored::GgxNumber] {
-        for (view, power) in [
-            (View::Cosine, 4),
-            (View::HalfTangent, 1),
-            (View::HalfTangent, 2),
-            (View::HalfTangent, 4),
-        ] {
+        let half_tangents = [1, 2, 4].map(|power| (View::HalfTangent, power));
+        for (view, power) in [(View::Cosine, 4)].into_iter().chain(half_tangents) {
             let design = Design { stored, view, power };
             let errors: Vec<String> = [1.8, 2.0, 4.0, f64::INFINITY]
                 .map(|gamma| format!("{:.1e}", design.error(&Shape::new(gamma).expect("in range"))))

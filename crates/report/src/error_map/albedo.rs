@@ -22,7 +22,6 @@ pub(crate) fn spec(table: &Table) -> Option<AlbedoSpec> {
     AlbedoSpec::of_table(table, (FINE * table.certificate.worst()).clamp(least, most))
 }
 
-/// Directional albedos, or their averages.
 pub(super) struct Albedos<'a> {
     /// The directional ones.
     table: &'a Table,

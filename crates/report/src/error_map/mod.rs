@@ -24,7 +24,6 @@ pub use span::{Quantity, Span};
 
 /// Shares of the axes of a table, the last axes unused where it has fewer.
 type Place = [f64; AXES];
-/// Most axes of any table.
 const AXES: usize = 4;
 
 /// Errors of a table over one or two of its axes.

@@ -5,7 +5,7 @@ use microfacet_tables::Table;
 use super::super::drawing::SIZE;
 use super::{ticks, words};
 use crate::error_map::{ErrorMap, Span};
-use crate::plot::{Axis, Curve, Drawing, Figure, HeatMap, Key, Mark, Method, Panel};
+use crate::plot::{Axis, Curve, Drawing, Figure, HeatMap, Key, Mark, Panel};
 
 /// The low end of the scale: about the rounding of single precision.
 const LOW: f64 = 1e-7;
@@ -41,7 +41,7 @@ pub(super) fn drawn(table: &Table, map: &ErrorMap, scale: &Axis) -> String {
 }
 
 fn curve(map: &ErrorMap, x: Axis, y: Axis) -> Drawing {
-    let key = Key::Method(Method::Table);
+    let key = Key::TABLE;
     let last = (map.columns - 1).max(1) as f64;
     // What is smaller than the scale's low end is rounding.
     let error = |x: f64| if x < LOW { LOW } else { x };

@@ -23,7 +23,6 @@ const IN_WORDS: usize = 12;
 /// Most maps of a page.
 const MOST: usize = 12;
 
-/// The maps of a page.
 struct Chosen<'a> {
     /// Tables and axes, in the order of the set.
     maps: Vec<(&'a Table, Sides)>,

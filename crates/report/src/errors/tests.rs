@@ -1,12 +1,9 @@
 use std::time::Instant;
 
-use microfacet_baker::plan::{Options, Plan};
-use microfacet_baker::scene::Scene;
-use microfacet_baker::table_set::{Target, bake};
-use microfacet_baker::table_spec::Quality;
 use microfacet_tables::{Kind, Provenance};
 
 use super::*;
+use crate::tests::baked;
 
 fn html(set: &Tables, meter: &Meter) -> String {
     let source = Source { name: "a set", set, validation: None };
@@ -17,7 +14,6 @@ fn drawn(set: &Tables) -> String {
     html(set, &Meter::default())
 }
 
-/// The maps of a section.
 fn figures(html: &str) -> Vec<&str> {
     html.split("<figure").skip(1).map(|rest| rest.split("</figure>").next().unwrap()).collect()
 }
@@ -56,9 +52,7 @@ fn progress_ends_when_the_section_does_and_its_estimate_is_of_the_right_size() {
 
 #[test]
 fn one_shape_has_curves_and_names_of_a_set_are_text() {
-    let scene = Scene::from_recipe_str("[[material]]\nname = \"a\"\nsigma = 0.3\ngamma = 3\n");
-    let plan = Plan::new(&scene.unwrap(), Options::default()).unwrap();
-    let baked = bake(&plan, Target::Quality(Quality::Draft, Default::default())).unwrap().set;
+    let baked = baked("[[material]]\nname = \"a\"\nsigma = 0.3\ngamma = 3\n");
     let mut tables = baked.tables().to_vec();
     tables.iter_mut().for_each(|table| table.name = format!("<script>&\"{}", table.name));
     let set = Tables::from_tables(baked.provenance().clone(), tables).unwrap();
@@ -87,8 +81,7 @@ fn a_library_shows_the_largest_errors() {
     let recipe: String = [2.5, 3.0, 4.0, 5.0, 7.0]
         .map(|gamma| format!("[[material]]\nname = \"{gamma}\"\nsigma = 0.3\ngamma = {gamma}\n"))
         .concat();
-    let plan = Plan::new(&Scene::from_recipe_str(&recipe).unwrap(), Options::default()).unwrap();
-    let set = bake(&plan, Target::Quality(Quality::Draft, Default::default())).unwrap().set;
+    let set = baked(&recipe);
     let chosen = Chosen::of(&set);
     assert_eq!(chosen.maps.len(), 12);
     assert_eq!(chosen.left_out, set.tables().len() - 12);

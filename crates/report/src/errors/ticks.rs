@@ -21,7 +21,7 @@ pub(super) fn of(span: &Span) -> Vec<(f64, String)> {
     ends.into_iter().chain(round(span.quantity).iter().filter_map(inside)).collect()
 }
 
-/// Numbers as people would choose them, the most telling first.
+/// Round numbers, the most telling first.
 fn round(quantity: Quantity) -> &'static [f64] {
     match quantity {
         Quantity::Gamma => &[

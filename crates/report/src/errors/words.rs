@@ -7,7 +7,6 @@ use super::super::drawing::error;
 use crate::error_map::{ErrorMap, Quantity};
 use crate::words::certificate;
 
-/// What a table is of.
 pub(super) fn what(table: &Table) -> String {
     let form = || match table.subject.masking.unwrap_or_default() {
         Masking::Uncorrelated => "uncorrelated masking",
@@ -30,29 +29,23 @@ pub(super) fn what(table: &Table) -> String {
 
 /// The quantity of an axis.
 pub(super) fn axis(quantity: Quantity) -> &'static str {
-    match quantity {
-        Quantity::Gamma => "shape γ",
-        Quantity::Sigma => "roughness σ",
-        Quantity::Eta => "index of refraction η",
-        Quantity::Azimuth => "azimuth of the view, degrees",
-        Quantity::Cosine => "cos θ of the view",
-        Quantity::Cotangent => "view, cot θ / σ",
-        Quantity::Slope => "slope / σ",
-        Quantity::Number => "random number u",
-    }
+    spoken(quantity)[0]
 }
 
-/// Its symbol.
 fn symbol(quantity: Quantity) -> &'static str {
+    spoken(quantity)[1]
+}
+
+fn spoken(quantity: Quantity) -> [&'static str; 2] {
     match quantity {
-        Quantity::Gamma => "γ",
-        Quantity::Sigma => "σ",
-        Quantity::Eta => "η",
-        Quantity::Azimuth => "φ",
-        Quantity::Cosine => "cos θ",
-        Quantity::Cotangent => "cot θ/σ",
-        Quantity::Slope => "the slope",
-        Quantity::Number => "u",
+        Quantity::Gamma => ["shape γ", "γ"],
+        Quantity::Sigma => ["roughness σ", "σ"],
+        Quantity::Eta => ["index of refraction η", "η"],
+        Quantity::Azimuth => ["azimuth of the view, degrees", "φ"],
+        Quantity::Cosine => ["cos θ of the view", "cos θ"],
+        Quantity::Cotangent => ["view, cot θ / σ", "cot θ/σ"],
+        Quantity::Slope => ["slope / σ", "the slope"],
+        Quantity::Number => ["random number u", "u"],
     }
 }
 
@@ -132,7 +125,7 @@ pub(super) fn map(table: &Table, map: &ErrorMap) -> String {
     text
 }
 
-/// What is seen, for those who do not see it.
+/// What a map shows, for screen readers.
 pub(super) fn label(table: &Table, map: &ErrorMap) -> String {
     let y = map.y.as_ref().map(|y| format!(" and {}", axis(y.quantity)));
     format!(

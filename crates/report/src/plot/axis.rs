@@ -14,7 +14,6 @@ pub struct Axis {
     is_fine: bool,
 }
 
-/// A mark on an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tick {
     /// Where, 0 at the low end and 1 at the high one.
@@ -161,7 +160,6 @@ impl Axis {
     }
 }
 
-/// 10ⁿ with raised digits.
 fn power_of_ten(power: i32) -> String {
     let raised = |c: char| match c {
         '-' => '⁻',

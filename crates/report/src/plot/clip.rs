@@ -8,7 +8,6 @@ const EDGE: f64 = 1e-9;
 /// Nearer than this, one mark stands for several.
 const APART: f64 = 0.02;
 
-/// A curve, cut at the panel's edges.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Clipped {
     /// Connected parts inside.

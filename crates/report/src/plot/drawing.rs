@@ -13,17 +13,34 @@ pub(super) enum Anchor {
     End,
 }
 
-/// One thing that is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Shape {
-    /// A line through points.
-    Line { points: Vec<At>, color: Color, width: f64, dash: Dash },
-    /// A filled polygon.
-    Area { corners: Vec<At>, color: Color },
+    Line {
+        points: Vec<At>,
+        color: Color,
+        width: f64,
+        dash: Dash,
+    },
+    Area {
+        corners: Vec<At>,
+        color: Color,
+    },
     /// Pixels line by line, `columns` of them in each, over a rectangle.
-    Image { corner: At, size: At, columns: usize, pixels: Vec<Color> },
+    Image {
+        corner: At,
+        size: At,
+        columns: usize,
+        pixels: Vec<Color>,
+    },
     /// A text; `at` is on its baseline. Turned, it is read upwards.
-    Text { at: At, text: String, size: f64, anchor: Anchor, turned: bool, color: Color },
+    Text {
+        at: At,
+        text: String,
+        size: f64,
+        anchor: Anchor,
+        turned: bool,
+        color: Color,
+    },
 }
 
 /// A drawing: its size in pixels and what is on it, in order. It is written as SVG and as PNG.

@@ -115,7 +115,6 @@ mod tests {
         HeatMap { x, y, columns: 2, values, scale, ring, size: [400.0, 300.0] }
     }
 
-    /// The colour at fractions of the axes.
     fn at(map: &HeatMap, [x, y]: [f64; 2]) -> Color {
         let image = image::load_from_memory(&map.drawing().png().unwrap()).unwrap().to_rgb8();
         let [width, height] = [400.0 - LEFT - RIGHT, 300.0 - BARE - BELOW];

@@ -2,7 +2,6 @@
 
 use microfacet_baker::distribution::DistributionKind;
 
-/// Red, green and blue of sRGB.
 pub(super) type Color = [u8; 3];
 
 pub(super) const BLACK: Color = [0, 0, 0];
@@ -17,35 +16,8 @@ pub enum Key {
     Gamma(f64),
     /// The family at this σ, where a figure compares roughnesses.
     Sigma(f64),
-    /// A way to compute something.
-    Method(Method),
-    /// One of a figure's own list, by its place there; colours repeat after nine.
+    /// One of a figure's own list, by its place there; colours repeat after ten.
     Nth(usize),
-}
-
-/// Ways to compute masking, or to draw normals.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
-    /// The tables of this project.
-    Table,
-    /// Λ by Ribardière et al. 2017, eq. 13–15.
-    Hypergeometric,
-    /// Λ by their eq. 21, for integer γ.
-    Integer,
-    /// Λ by their eq. 21, for half-integer γ.
-    HalfInteger,
-    /// Λ by their eq. 22–23, a rational approximation.
-    Rational,
-    /// The closed form of GGX.
-    Ggx,
-    /// The closed form of Beckmann's distribution.
-    Beckmann,
-    /// Normals by inversion of the CDF in double precision.
-    Inversion,
-    /// Normals by rejection.
-    Rejection,
-    /// Anything else.
-    Other,
 }
 
 /// How a curve is drawn; where curves hide each other, they differ in this.
@@ -91,7 +63,7 @@ const SIGMAS: [Color; 5] =
     [[50, 10, 20], [125, 15, 40], [195, 35, 70], [230, 95, 125], [245, 165, 180]];
 
 /// Of a list whose entries have no colour elsewhere.
-const NTH: [Color; 9] = [BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, OLIVE, WINE, BLACK];
+const NTH: [Color; 10] = [BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, OLIVE, WINE, BLACK, GREY];
 
 /// Numbers from black through violet and orange to a pale yellow, each lighter than the last.
 const FALSE: [Color; 5] =
@@ -106,7 +78,11 @@ pub(super) fn false_color(fraction: f64) -> Color {
 }
 
 impl Key {
-    /// The colour.
+    /// Of the tables of this project, in a list of ways to compute something.
+    pub const TABLE: Self = Self::Nth(0);
+    /// Of what is not in such a list.
+    pub const OTHER: Self = Self::Nth(9);
+
     pub(super) fn color(self) -> Color {
         match self {
             Self::Kind(kind) => match kind {
@@ -127,18 +103,6 @@ impl Key {
                 between(&GAMMAS, place)
             }
             Self::Sigma(sigma) => between(&SIGMAS, sigma / 1.2),
-            Self::Method(method) => match method {
-                Method::Table => BLUE,
-                Method::Hypergeometric => VERMILLION,
-                Method::Integer => BLACK,
-                Method::HalfInteger => ORANGE,
-                Method::Rational => GREEN,
-                Method::Ggx => SKY,
-                Method::Beckmann => OLIVE,
-                Method::Inversion => PURPLE,
-                Method::Rejection => WINE,
-                Method::Other => GREY,
-            },
             Self::Nth(i) => NTH[i % NTH.len()],
         }
     }
@@ -199,26 +163,11 @@ mod tests {
 
     #[test]
     fn colours_for_dark_paper_stand_out_from_it_and_differ() {
-        use Method::*;
-        let methods = [
-            Table,
-            Hypergeometric,
-            Integer,
-            HalfInteger,
-            Rational,
-            Ggx,
-            Beckmann,
-            Inversion,
-            Rejection,
-            Other,
-        ];
         let steps = || (0..=40).map(|i| f64::from(i) / 40.0);
         let gammas = steps().map(|x| Key::Gamma(1.5 + libm::exp10(4.0 * x - 2.0)));
         let kinds = DistributionKind::ALL.map(Key::Kind).map(Key::color);
-        let keys = gammas
-            .chain(steps().map(|x| Key::Sigma(1.2 * x)))
-            .chain(methods.map(Key::Method))
-            .chain((0..NTH.len()).map(Key::Nth));
+        let keys =
+            gammas.chain(steps().map(|x| Key::Sigma(1.2 * x))).chain((0..NTH.len()).map(Key::Nth));
         for color in keys.map(Key::color).chain(kinds) {
             let contrast = luminance(on_dark(color)) / luminance([0x11; 3]);
             assert!(contrast >= 3.0, "{color:?}: {contrast}");

@@ -43,7 +43,6 @@ impl Area {
     }
 }
 
-/// A place for a name.
 struct Candidate {
     right: bool,
     /// Where the name starts, or ends if it is to the left; at the middle of its height.
@@ -100,7 +99,6 @@ fn candidates([x, y]: At, width: f64) -> impl Iterator<Item = Candidate> {
     (-24..=24).flat_map(sides)
 }
 
-/// Squares along a line.
 fn squares(from: At, to: At) -> impl Iterator<Item = Area> {
     let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
     let steps = (dx.hypot(dy) / STRIDE).ceil().max(1.0);

@@ -5,16 +5,13 @@ use super::ink::{BLACK, Color, Dash};
 use super::panel::{self, LEFT, LETTERS, RIGHT};
 use super::{Figure, Panel, text};
 
-/// Height of a line of the legend.
 const LINE: f64 = 19.0;
 /// Length of the sample of a curve, the gap before its name, and that after it.
 const SAMPLE: f64 = 22.0;
 const GAP: f64 = 7.0;
 const APART: f64 = 20.0;
-/// Room beneath a legend.
 const BELOW: f64 = 10.0;
 
-/// Lays a figure out.
 pub(super) fn drawing(figure: &Figure) -> Drawing {
     let [width, height] = figure.panel;
     let rows: Vec<&[Panel]> = figure.panels.chunks(figure.columns.max(1)).collect();

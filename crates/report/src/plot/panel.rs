@@ -13,12 +13,9 @@ const ABOVE: f64 = 34.0;
 pub(super) const BARE: f64 = 14.0;
 pub(super) const BELOW: f64 = 50.0;
 
-/// Width of a curve.
 pub(super) const CURVE: f64 = 2.0;
-/// Radius of a point.
 pub(super) const DOT: f64 = 4.0;
 
-/// Sizes of letters.
 pub(super) const TITLE: f64 = 15.0;
 pub(super) const LETTERS: f64 = 12.0;
 pub(super) const NUMBERS: f64 = 11.0;
@@ -54,7 +51,6 @@ impl Frame {
     }
 }
 
-/// Draws a panel into an area.
 pub(super) fn draw(drawing: &mut Drawing, panel: &Panel, corner: At, size: At) {
     let above = if panel.title.is_empty() { BARE } else { ABOVE };
     let frame = Frame::within(corner, size, above);

@@ -14,7 +14,6 @@ use super::drawing::{Anchor, At, Drawing, Shape};
 use super::ink::Color;
 use super::{PlotError, text};
 
-/// Pixels of the image along one of the page.
 pub(super) const SCALE: u32 = 2;
 
 impl Drawing {

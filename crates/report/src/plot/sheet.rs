@@ -51,7 +51,6 @@ const APART: f64 = 16.0;
 /// Room for the scale below the pictures, and in it the scale: its length and height.
 const FOOT: f64 = 70.0;
 const BAR: [f64; 2] = [420.0, 14.0];
-/// Colours of the scale.
 const STEPS: usize = 256;
 
 impl Sheet {
@@ -61,7 +60,6 @@ impl Sheet {
         (width - self.names() - apart) / self.columns.len() as f64 - GAP
     }
 
-    /// The room of the names of rows.
     fn names(&self) -> f64 {
         let lines = self.rows.iter().flat_map(|(name, _)| name.lines());
         let widest = lines.map(|line| text::width(line, LETTERS)).fold(0.0, f64::max);

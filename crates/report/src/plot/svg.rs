@@ -9,7 +9,6 @@ use super::drawing::{Anchor, At, Drawing, Shape};
 use super::ink::{BLACK, Color, GRID, on_dark};
 use super::{png, text};
 
-/// What lines have in common.
 const LINES: &str = "fill=\"none\" stroke-linejoin=\"round\"";
 
 impl Drawing {
@@ -26,7 +25,7 @@ impl Drawing {
     }
 
     /// As an element of an HTML page, of class `plot`: as wide as its place, in the page's fonts,
-    /// with colours for light and dark; `label` is read to those who do not see it.
+    /// with colours for light and dark; `label` is for screen readers.
     ///
     /// Ink is `--ink` and the grid `--line`, custom properties of the page; other colours are
     /// `light-dark()`. A browser without these takes the attributes beside them: those on white.

@@ -39,7 +39,6 @@ pub(super) fn outlines(text: &str) -> (f64, Vec<(f64, Vec<OutlineCurve>)>) {
     (em(), letters)
 }
 
-/// Whether every letter of a text can be drawn.
 #[cfg(test)]
 pub(super) fn has_all(text: &str) -> bool {
     text.chars().all(|c| SANS.glyph_id(c).0 != 0)

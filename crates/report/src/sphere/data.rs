@@ -15,11 +15,11 @@ use microfacet_sampler::{ConductorFresnel, MaterialError, Metal, StudentT, Table
 use microfacet_tables::{MaterialEntry, Reflectance};
 use rayon::prelude::*;
 use serde::Serialize;
+use serde_json::{Value, json};
 
 use super::super::subjects::{Shown, Subjects, shape};
 use super::scene::Look;
 
-/// σ that the sphere can have.
 pub(super) const SIGMA: [f64; 2] = [0.01, 1.0];
 /// Texels of albedos along roughness and view.
 const TEXELS: [usize; 2] = [32, 48];
@@ -28,45 +28,15 @@ const AVERAGES: usize = 48;
 /// The metal of lobes that state no reflectance of a conductor.
 pub(super) const UNSTATED: Metal = Metal::Gold;
 
-/// All that the script reads, as JSON. Tables are deflated bytes, those of numbers with the bytes
-/// of equal weight together, in base64.
-#[derive(Serialize)]
+/// All that the script reads.
 pub(super) struct Data {
-    width: usize,
-    /// The pairs of `export` for shaders: a texture so wide.
-    tables: String,
-    stops: Vec<Stop>,
-    /// Places of GGX and of Beckmann.
-    ggx: usize,
-    beckmann: usize,
-    sigma: [f64; 2],
-    /// √(1 − E) in half precision, by stop, roughness and view, and its texels along the last two.
-    /// Of heavy tails 1 − E rises as σ, and so the root as the coordinate √σ.
-    lost: String,
-    texels: [usize; 2],
-    /// ln(1 − E_avg) by stop and at √(σ/σ_max) = 1/n, 2/n … 1.
-    averages: String,
-    average_count: usize,
-    reflectances: Vec<Choice>,
-    materials: Vec<Material>,
-    /// Which of them is shown first.
-    opening: usize,
+    /// The names of reflectances, in their order.
+    pub(super) reflectances: Vec<String>,
+    /// As a JSON that no element of HTML ends in.
+    pub(super) json: String,
 }
 
-/// A shape that the sphere can have.
 #[derive(Serialize)]
-struct Stop {
-    /// γ; none is ∞.
-    gamma: Option<f64>,
-    label: String,
-    /// The place of its tables.
-    shape: usize,
-    /// The stop whose visible normals are drawn for it.
-    drawn: usize,
-}
-
-/// A reflectance to choose.
-#[derive(Clone, Debug, PartialEq, Serialize)]
 struct Choice {
     name: String,
     /// Complex index of refraction; or F0 of Schlick's, and k below 0.
@@ -76,16 +46,6 @@ struct Choice {
     average: [f32; 3],
 }
 
-/// A lobe with a picture.
-#[derive(Serialize)]
-struct Material {
-    name: String,
-    stop: usize,
-    sigma: [f64; 2],
-    reflectance: usize,
-}
-
-/// γ for people.
 pub(super) fn label(gamma: f64) -> String {
     match gamma {
         2.0 => format!("GGX ({})", shape(gamma)),
@@ -153,7 +113,6 @@ impl Choice {
     }
 }
 
-/// How a lobe looks in its picture.
 pub(super) fn look(subjects: &Subjects, shown: &Shown) -> Look {
     let gamma = subjects.stops[stop(subjects, shown.gamma)];
     Look {
@@ -171,7 +130,6 @@ pub(super) fn axes() -> [TexelAxis; 2] {
     std::array::from_fn(|i| TexelAxis::to_ends(along[i], TEXELS[i]))
 }
 
-/// Where albedos are read, as GLSL.
 pub(super) fn albedo_coordinates() -> String {
     let at = shader_coordinates(&axes(), f64::NAN, ["vec", ""]);
     format!(
@@ -238,43 +196,45 @@ impl Data {
                 reflectances.push(own);
                 reflectances.len() - 1
             });
-            let sigma = look(subjects, shown).sigma;
-            let stop = stop(subjects, shown.gamma);
-            Material { name: shown.name.clone(), stop, sigma, reflectance }
+            let (stop, sigma) = (stop(subjects, shown.gamma), look(subjects, shown).sigma);
+            json!({ "name": shown.name, "stop": stop, "sigma": sigma, "reflectance": reflectance })
         };
-        let materials = subjects.shown.iter().map(material).collect();
+        let materials: Vec<Value> = subjects.shown.iter().map(material).collect();
         let index = |gamma| stops.iter().position(|&stop| stop == gamma).expect("a slice");
-        let of_stop = |&gamma: &f64| Stop {
-            gamma: gamma.is_finite().then_some(gamma),
-            label: label(gamma),
-            shape: place(gamma),
-            drawn: index(drawn(subjects, gamma)),
+        let of_stop = |&gamma: &f64| {
+            json!({
+                // None is ∞.
+                "gamma": gamma.is_finite().then_some(gamma),
+                "label": label(gamma),
+                "shape": place(gamma),
+                // The stop whose visible normals are drawn for it.
+                "drawn": index(drawn(subjects, gamma)),
+            })
         };
+        let json = json!({
+            // The pairs of `export` for shaders: a texture so wide.
+            "width": WIDTH,
+            "tables": packed(pairs.as_flattened().iter().map(|x| x.to_le_bytes())),
+            "stops": stops.iter().map(of_stop).collect::<Vec<Value>>(),
+            // Places of these shapes.
+            "ggx": place(2.0),
+            "beckmann": place(f64::INFINITY),
+            "sigma": SIGMA,
+            // √(1 − E) in half precision, by stop, roughness and view. Of heavy tails 1 − E rises
+            // as σ, and so the root as the coordinate √σ.
+            "lost": packed(lost.iter().flatten().map(|x| x.to_le_bytes())),
+            "texels": TEXELS,
+            // ln(1 − E_avg) by stop and at √(σ/σ_max) = 1/n, 2/n … 1.
+            "averages": packed(averages.iter().flatten().map(|x| x.to_le_bytes())),
+            "average_count": AVERAGES,
+            "reflectances": reflectances,
+            "materials": materials,
+            "opening": subjects.opening(),
+        });
         Ok(Self {
-            width: WIDTH,
-            tables: packed(pairs.as_flattened().iter().map(|x| x.to_le_bytes())),
-            stops: stops.iter().map(of_stop).collect(),
-            ggx: place(2.0),
-            beckmann: place(f64::INFINITY),
-            sigma: SIGMA,
-            lost: packed(lost.iter().flatten().map(|x| x.to_le_bytes())),
-            texels: TEXELS,
-            averages: packed(averages.iter().flatten().map(|x| x.to_le_bytes())),
-            average_count: AVERAGES,
-            reflectances,
-            materials,
-            opening: subjects.opening(),
+            json: json.to_string().replace('<', "\\u003c"),
+            reflectances: reflectances.into_iter().map(|choice| choice.name).collect(),
         })
-    }
-
-    /// The names of reflectances, in their order.
-    pub(super) fn reflectance_names(&self) -> impl Iterator<Item = &str> {
-        self.reflectances.iter().map(|reflectance| reflectance.name.as_str())
-    }
-
-    /// As a JSON that no element of HTML ends in.
-    pub(super) fn json(&self) -> String {
-        serde_json::to_string(self).expect("names and finite numbers").replace('<', "\\u003c")
     }
 }
 
@@ -287,7 +247,7 @@ fn is_kept(table: &str, is_slice: bool) -> bool {
     }
 }
 
-/// Numbers as text, see [`Data`].
+/// Numbers as text: deflated, with the bytes of equal weight together, in base64.
 fn packed<const N: usize>(numbers: impl Iterator<Item = [u8; N]> + Clone) -> String {
     let planes = (0..N).flat_map(|i| numbers.clone().map(move |bytes| bytes[i]));
     let planes: Vec<u8> = planes.collect();

@@ -12,9 +12,7 @@ use super::scene::Look;
 /// The length of the longest arrow, as `REACH` of lobe.js, and lights of a still.
 const REACH: f64 = 150.0;
 const LIGHTS: usize = 361;
-/// The views of stills, in degrees.
 const VIEWS: [u32; 3] = [15, 45, 75];
-/// Names of the curves, as classes.
 const CURVES: [&str; 3] = ["shape", "ggx", "beckmann"];
 
 /// Axes, and curves of these points: of the shape, of GGX and of Beckmann.
@@ -38,7 +36,6 @@ fn drawing(points: [&str; 3], view: &str, inside: &Markup, id: &str) -> Markup {
     }
 }
 
-/// What the curves are.
 fn legend() -> Markup {
     html! {
         ul.legend {
@@ -91,7 +88,6 @@ pub(super) fn stills(tables: &Tables, look: &Look, name: &str) -> Result<Markup,
 }
 
 impl Look {
-    /// The lobe, and GGX and Beckmann of the same σ.
     fn beside(&self, tables: &Tables) -> Result<[Lobe; 3], MaterialError> {
         let of = |gamma| tables.lobe(self.sigma, gamma);
         Ok([of(self.gamma)?, of(2.0)?, of(f64::INFINITY)?])

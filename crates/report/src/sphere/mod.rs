@@ -21,8 +21,9 @@ use microfacet_sampler::{BindError, Masking, Tables};
 use super::subjects::{Shown, Subjects};
 use super::{ReportError, Source};
 use data::{Data, SIGMA, UNSTATED, is_unstated, label, look};
-pub use scene::{Film, Look};
+pub use scene::{Film, Look, tangent_frame};
 use scene::{Scene, jpeg};
+pub use studio::by_cosine;
 pub use tone::srgb;
 
 /// Pictures of lobes, and the one that stands for the sphere.
@@ -157,7 +158,7 @@ fn controls(subjects: &Subjects, data: &Data) -> Markup {
             div.row {
                 label for="metal" { "Metal" }
                 select #metal {
-                    @for (i, name) in data.reflectance_names().enumerate() {
+                    @for (i, name) in data.reflectances.iter().enumerate() {
                         option value=(i) { (name) }
                     }
                 }
@@ -255,7 +256,7 @@ fn scripts(data: &Data, shape: &Shape) -> Markup {
         @for (id, text) in &shaders {
             script id=(id) type="x-shader/x-fragment" { (verbatim(text)) }
         }
-        script #sphere-data type="application/json" { (PreEscaped(data.json())) }
+        script #sphere-data type="application/json" { (PreEscaped(&data.json)) }
         script type="module" { (verbatim(script)) }
     }
 }

@@ -49,7 +49,6 @@ fn pcg3d(v: [u32; 3]) -> [u32; 3] {
     [x, y, z]
 }
 
-/// The steps as GLSL.
 pub(super) fn constants() -> String {
     let mut text = String::new();
     for (i, [a, b, c]) in STEPS.as_chunks::<3>().0.iter().enumerate() {

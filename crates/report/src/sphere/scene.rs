@@ -64,7 +64,6 @@ impl Scene {
         Ok(Self { studio: Studio::new(), bsdf, drawn, compensated: look.compensated })
     }
 
-    /// The mean radiance of a pixel, counted from the lower left.
     fn pixel(&self, at: [u32; 2], film: Film) -> Vec3 {
         let sum: Vec3 = (0..film.samples).map(|i| self.sample(at, i, film)).sum();
         sum / film.samples as f32
@@ -88,7 +87,7 @@ impl Scene {
     /// normals, one by each lamp, with compensation one by the cosine, under the balance heuristic
     /// (Veach 1997, section 9.2).
     fn shade(&self, n: Vec3, d: Vec3, u: &[f32; COUNT]) -> Vec3 {
-        let frame = frame(n);
+        let frame = tangent_frame(n);
         let to_tangent = frame.transpose();
         let v = to_tangent * -d;
         let m = self.drawn.sample_visible_normal(v, [u[2], u[3]]);
@@ -120,7 +119,6 @@ impl Scene {
         Vec3::from(f) * (l.z / pdf) * self.studio.radiance(n, towards, true)
     }
 
-    /// The picture, from its upper left.
     pub(super) fn picture(&self, film: Film) -> Vec<[u8; 3]> {
         let size = film.size;
         let pixel = |i: u32| display(self.pixel([i % size, size - 1 - i / size], film));
@@ -128,11 +126,10 @@ impl Scene {
     }
 }
 
-/// The tangent frame: x along the parallels, y along the meridians, z the normal.
-fn frame(n: Vec3) -> Mat3 {
-    let across = Vec3::new(n.z, 0.0, -n.x);
-    let length = across.length();
-    let x = if length > 1e-6 { across / length } else { Vec3::X };
+/// The tangent frame at a normal of a sphere, as columns: x along the parallels, y along the
+/// meridians, z the normal.
+pub fn tangent_frame(n: Vec3) -> Mat3 {
+    let x = Vec3::Y.cross(n).normalize_or(Vec3::X);
     Mat3::from_cols(x, n.cross(x), n)
 }
 
@@ -142,7 +139,6 @@ fn tent(u: f32) -> f32 {
     (1.0 - (1.0 - t.abs()).sqrt()).copysign(t)
 }
 
-/// A picture as a JPEG file.
 pub(super) fn jpeg(pixels: &[[u8; 3]], size: u32) -> Vec<u8> {
     let mut file = Vec::new();
     JpegEncoder::new_with_quality(&mut file, 90)

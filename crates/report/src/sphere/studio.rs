@@ -5,7 +5,6 @@
 //! `studio.glsl` has the same functions; their constants are written from here.
 
 use std::f32::consts::{FRAC_1_PI, PI};
-use std::fmt::Write;
 
 use glam::{Vec2, Vec3};
 
@@ -17,7 +16,6 @@ pub(super) struct Lamp {
     towards: Vec3,
     across: Vec3,
     up: Vec3,
-    /// Half its edges.
     half: Vec2,
     /// How far within its edges the light rises.
     soft: f32,
@@ -58,7 +56,6 @@ const EYE: Vec3 = Vec3::new(0.0, 1.35, 6.2);
 const LOOKS_AT: Vec3 = Vec3::new(0.0, -0.1, 0.0);
 const TANGENT: f32 = 0.222;
 
-/// The studio.
 pub(super) struct Studio {
     lamps: [Lamp; 3],
     /// The camera's axes: right, up, and towards it.
@@ -163,7 +160,7 @@ impl Studio {
 }
 
 /// A direction by the cosine, from two numbers in [0, 1).
-pub(super) fn by_cosine([a, b]: [f32; 2]) -> Vec3 {
+pub fn by_cosine([a, b]: [f32; 2]) -> Vec3 {
     let (sin, cos) = (2.0 * PI * b).sin_cos();
     let (r, z) = (a.sqrt(), (1.0 - a).sqrt());
     Vec3::new(r * cos, r * sin, z)
@@ -174,52 +171,39 @@ pub(super) fn cosine_pdf(l: Vec3) -> f32 {
     l.z * FRAC_1_PI
 }
 
-/// The constants as GLSL.
 pub(super) fn constants() -> String {
-    let vec3 = |v: Vec3| format!("vec3({}, {}, {})", single(v.x), single(v.y), single(v.z));
-    let vec2 = |v: Vec2| format!("vec2({}, {})", single(v.x), single(v.y));
+    let numbers = |x: &[f32]| x.iter().map(|x| single(*x)).collect::<Vec<_>>().join(", ");
+    let vec3 = |v: Vec3| format!("vec3({})", numbers(&v.to_array()));
+    let vec2 = |v: Vec2| format!("vec2({})", numbers(&v.to_array()));
     let studio = Studio::new();
-    let mut text = String::from(
-        "struct Lamp { vec3 towards; vec3 across; vec3 up; vec2 half_size; float soft; \
-         vec3 radiance; };\n",
-    );
-    let lamps: Vec<String> = studio
-        .lamps
-        .iter()
-        .map(|lamp| {
-            format!(
-                "    Lamp({}, {},\n         {}, {}, {},\n         {})",
-                vec3(lamp.towards),
-                vec3(lamp.across),
-                vec3(lamp.up),
-                vec2(lamp.half),
-                single(lamp.soft),
-                vec3(lamp.radiance),
-            )
-        })
-        .collect();
-    let count = lamps.len();
-    writeln!(text, "const Lamp LAMPS[{count}] = Lamp[{count}](\n{});", lamps.join(",\n"))
-        .expect("memory");
-    let [right, up, back] = studio.camera;
-    let vectors = [
-        ("ZENITH", ZENITH),
-        ("HORIZON", HORIZON),
-        ("GLOW", GLOW),
-        ("GLOW_TOWARDS", GLOW_TOWARDS),
-        ("FLOOR_DOME", FLOOR_DOME),
-        ("FLOOR_KEY", FLOOR_KEY),
-        ("EYE", EYE),
-        ("CAMERA_RIGHT", right),
-        ("CAMERA_UP", up),
-        ("CAMERA_BACK", back),
+    let lamp = |Lamp { towards, across, up, half, soft, radiance }: &Lamp| {
+        let directions = [towards, across, up].map(|v| vec3(*v)).join(", ");
+        let (half, soft, radiance) = (vec2(*half), single(*soft), vec3(*radiance));
+        format!("    Lamp({directions},\n         {half}, {soft}, {radiance})")
+    };
+    let (count, lamps) = (studio.lamps.len(), studio.lamps.each_ref().map(lamp).join(",\n"));
+    let [right, up, back] = studio.camera.map(vec3);
+    let constants = [
+        ("vec3", "ZENITH", vec3(ZENITH)),
+        ("vec3", "HORIZON", vec3(HORIZON)),
+        ("vec3", "GLOW", vec3(GLOW)),
+        ("vec3", "GLOW_TOWARDS", vec3(GLOW_TOWARDS)),
+        ("vec3", "FLOOR_DOME", vec3(FLOOR_DOME)),
+        ("vec3", "FLOOR_KEY", vec3(FLOOR_KEY)),
+        ("vec3", "EYE", vec3(EYE)),
+        ("vec3", "CAMERA_RIGHT", right),
+        ("vec3", "CAMERA_UP", up),
+        ("vec3", "CAMERA_BACK", back),
+        ("vec2", "FLOOR_ENDS", vec2(FLOOR_ENDS.into())),
+        ("float", "PENUMBRA", single(PENUMBRA)),
+        ("float", "TANGENT", single(TANGENT)),
     ];
-    for (name, value) in vectors {
-        writeln!(text, "const vec3 {name} = {};", vec3(value)).expect("memory");
-    }
-    writeln!(text, "const vec2 FLOOR_ENDS = {};", vec2(FLOOR_ENDS.into())).expect("memory");
-    for (name, value) in [("PENUMBRA", PENUMBRA), ("TANGENT", TANGENT)] {
-        writeln!(text, "const float {name} = {};", single(value)).expect("memory");
-    }
-    text
+    let constant =
+        |(kind, name, value): &(&str, &str, String)| format!("const {kind} {name} = {value};\n");
+    format!(
+        "struct Lamp {{ vec3 towards; vec3 across; vec3 up; vec2 half_size; float soft; \
+         vec3 radiance; }};\n\
+         const Lamp LAMPS[{count}] = Lamp[{count}](\n{lamps});\n{}",
+        constants.iter().map(constant).collect::<String>()
+    )
 }

@@ -27,7 +27,7 @@ fn unpacked<const N: usize>(text: &Value) -> Vec<[u8; N]> {
 
 fn data(set: &Tables) -> (Subjects, Value) {
     let subjects = Subjects::of(set);
-    let json = Data::new(set, &subjects).unwrap().json();
+    let json = Data::new(set, &subjects).unwrap().json;
     (subjects, serde_json::from_str(&json).unwrap())
 }
 

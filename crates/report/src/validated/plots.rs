@@ -8,7 +8,6 @@ use super::super::drawing::{error, plot};
 use crate::plot::{Axis, Curve, Dash, Key, Panel};
 use crate::words::number;
 
-/// Points of a curve.
 const POINTS: usize = 200;
 /// The low end of the axis of errors of G1, below the rounding of single precision, and the least
 /// high end.
@@ -52,7 +51,6 @@ pub(super) fn p_values(record: &Record) -> Markup {
     }
 }
 
-/// The sorted errors of G1.
 pub(super) fn masking(record: &Record) -> Markup {
     let of = |tested: &Tested| tested.g1_error;
     let mut sorted: Vec<f64> = record.configurations.iter().map(of).collect();

@@ -154,7 +154,6 @@ fn coordinate(mapping: &Mapping) -> String {
     format!("{words} ({}{})", mapping.name(), parameters.join(","))
 }
 
-/// How values between the nodes of an axis are found.
 fn between(axis: &Axis) -> &'static str {
     if axis.len() == 1 {
         return "at the node only";

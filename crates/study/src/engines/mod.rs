@@ -19,7 +19,7 @@ use microfacet_export::texture::{
 };
 use microfacet_sampler::Masking;
 
-use crate::Outcome;
+use crate::{Outcome, print_head};
 
 /// Cosines that are even, and those that crowd at the horizon.
 const EVEN: usize = 500;
@@ -41,7 +41,6 @@ fn places() -> Vec<Place> {
     rough.flat_map(of).collect()
 }
 
-/// What a table is of.
 struct What {
     title: &'static str,
     quantity: &'static str,
@@ -142,8 +141,8 @@ pub fn run(arguments: &[String]) -> Outcome {
     });
     for what in &TABLES {
         println!("\n{}:\n", what.title);
-        println!("| layout | texels | shipped | exact values | fitted values | our coordinates |");
-        println!("| --- | --- | --- | --- | --- | --- |");
+        let sources = ["shipped", "exact values", "fitted values", "our coordinates"];
+        print_head(&[&["layout", "texels"], &sources[..]].concat());
         for (layout, textures) in &tables {
             let has = |texture: &Texture| {
                 let spec = &texture.spec;

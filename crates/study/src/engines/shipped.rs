@@ -50,20 +50,16 @@ pub fn decode(layout: &Layout, bytes: &[u8]) -> Texture {
                 let [r, g, b, a] = p.0.map(|x| f32::from(x) / 255.0);
                 [r, g, b].map(|x| x.powf(2.2) / a)
             };
-            (
-                image.pixels().flat_map(texel).collect(),
-                [image.height(), image.width()].map(|n| n as usize),
-            )
+            (image.pixels().flat_map(texel).collect(), size_of(&image))
         }
         "gltf" => {
             let image = image::load_from_memory(bytes).expect("an image").to_rgb8();
             let values = image.pixels().flat_map(|p| p.0.map(|x| f32::from(x) / 255.0)).collect();
-            (values, [image.height(), image.width()].map(|n| n as usize))
+            (values, size_of(&image))
         }
         _ => {
             let image = image::load_from_memory(bytes).expect("an image").to_rgb32f();
-            let size = [image.height(), image.width()].map(|n| n as usize);
-            (image.into_raw(), size)
+            (image.to_vec(), size_of(&image))
         }
     };
     let spec = layout.specs(2.0, size, false).remove(0);
@@ -90,6 +86,10 @@ fn halves(text: &str) -> Vec<f32> {
     let numbers = text.split(',').map(str::trim).filter(|x| !x.is_empty());
     let half = |x: &str| u16::from_str_radix(x.trim_start_matches("0x"), 16).expect("hexadecimal");
     numbers.map(|x| f16::from_bits(half(x)).to_f32()).collect()
+}
+
+fn size_of(image: &impl image::GenericImageView) -> [usize; 2] {
+    [image.height(), image.width()].map(|n| n as usize)
 }
 
 fn square(values: Vec<f32>, channels: usize) -> (Vec<f32>, [usize; 2]) {

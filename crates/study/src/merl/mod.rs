@@ -1,4 +1,4 @@
-//! Makes files in the format of the MERL database, for those who do not have it: materials of known
+//! Makes files in the format of the MERL database, which may not be passed on: materials of known
 //! lobes, and of lobes outside the Student-t family, with noise and gaps.
 //!
 //! ```sh

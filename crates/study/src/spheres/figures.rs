@@ -34,7 +34,6 @@ pub(crate) enum Figure {
     Energy,
 }
 
-/// Spheres in rows and columns.
 pub(crate) struct Spheres {
     /// The page, with captions and without pictures.
     pub(crate) sheet: Sheet,
@@ -83,7 +82,6 @@ const DIAMOND: f64 = 2.42;
 const RED: [f32; 3] = [0.65, 0.04, 0.03];
 
 impl Figure {
-    /// The figure, with a meter of the bake that some need.
     pub(crate) fn spheres(self, meter: &Meter) -> Result<Spheres, Box<dyn Error>> {
         Ok(match self {
             Self::Roughness => roughness(&Tables::embedded())?,
@@ -139,7 +137,6 @@ fn brushed(tilt: f64, gamma: f64) -> String {
     format!("brushed, tilt {tilt}, γ {gamma}")
 }
 
-/// A row of a sphere for each column.
 fn row<T: Copy>(
     name: String,
     columns: &[T],

@@ -78,14 +78,12 @@ const BATCH: u32 = 64;
 /// How a sphere's square is exposed.
 #[derive(Clone, Copy)]
 struct Film {
-    /// Pixels across.
     cell: usize,
     limit: Limit,
     /// As of [`Spheres`].
     is_linear: bool,
 }
 
-/// A pixel of a sphere's square.
 fn pixel(scene: &Scene, [x, y]: [usize; 2], film: Film) -> Vec3 {
     let Film { cell, limit, is_linear } = film;
     let (sin, cos) = ELEVATION.sin_cos();

@@ -52,7 +52,6 @@ pub(crate) fn steps(radiance: Vec3, error: Vec3, is_linear: bool) -> f32 {
     255.0 * (b - a).max_element()
 }
 
-/// Encoded as sRGB.
 fn encoded(radiance: Vec3, is_linear: bool) -> Vec3 {
     let shown = |x: f32| if is_linear { x } else { shoulder(EXPOSURE * x) };
     Vec3::from(radiance.to_array().map(|x| srgb(shown(x).into()) as f32))

@@ -9,7 +9,7 @@ use microfacet_sampler::Transport;
 use crate::spheres::random::Random;
 use crate::spheres::scene::{Ray, Scene};
 
-/// A diamond reflects some 83 % from inside, so that 1e-8 of the light goes on longer.
+/// A diamond reflects some 83 % from inside, so that 1e-8 of the light is lost here.
 const MOST_BOUNCES: usize = 100;
 /// From here on paths end or split at random. Weights above 1 multiply inside a compensated
 /// diamond, to a thousand and more, unless the path splits.

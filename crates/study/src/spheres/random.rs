@@ -21,7 +21,6 @@ impl Random {
         Self { seed: pixel.wrapping_mul(0x9e37_79b9), index, dimension: 0 }
     }
 
-    /// The next number, in [0, 1).
     pub(crate) fn one(&mut self) -> f32 {
         let at = self.dimension % DIMENSIONS;
         let seed = self.seed.wrapping_add(self.dimension / DIMENSIONS);
@@ -29,7 +28,6 @@ impl Random {
         sobol_burley::sample(self.index, at, seed)
     }
 
-    /// The next two.
     pub(crate) fn two(&mut self) -> [f32; 2] {
         [self.one(), self.one()]
     }

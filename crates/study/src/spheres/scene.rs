@@ -2,16 +2,16 @@
 //!
 //! World coordinates are right-handed, y up. The sphere has radius 1 about the origin.
 
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::PI;
 
 use glam::{Mat3, Vec3};
 
+use microfacet_report::{by_cosine, tangent_frame};
 use microfacet_sampler::bsdf::Event;
 use microfacet_sampler::{AnyBsdf, Bsdf, BsdfSample, Transport};
 
 use crate::spheres::sky::Sky;
 
-/// The height of the floor.
 const FLOOR: f32 = -1.0;
 /// Edge of the floor's squares: so large that one sees them through rough diamond. Four of them
 /// meet under the sphere.
@@ -19,14 +19,12 @@ const SQUARE: f32 = 2.0;
 /// Rays that leave a surface start on it, to the rounding of this scene's coordinates.
 const NEAREST: f32 = 1e-4;
 
-/// A ray.
 pub(crate) struct Ray {
     pub(crate) origin: Vec3,
     /// Of unit length.
     pub(crate) direction: Vec3,
 }
 
-/// Where a ray meets a surface.
 pub(crate) struct Hit<'a> {
     pub(crate) point: Vec3,
     /// Tangent, bitangent and normal as columns: from the tangent frame to the world.
@@ -43,15 +41,12 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
-    /// What a ray meets first.
     pub(crate) fn hit(&self, ray: &Ray) -> Option<Hit<'_>> {
         let Ray { origin, direction } = *ray;
         if let Some(t) = sphere(ray) {
             let n = (origin + t * direction).normalize();
             // Brushed round the vertical axis.
-            let tangent = Vec3::Y.cross(n).normalize_or(Vec3::X);
-            let frame = Mat3::from_cols(tangent, n.cross(tangent), n);
-            return Some(Hit { point: n, frame, bsdf: &self.material });
+            return Some(Hit { point: n, frame: tangent_frame(n), bsdf: &self.material });
         }
         let floor = self.floor.as_ref()?;
         let t = (FLOOR - origin.y) / direction.y;
@@ -70,7 +65,6 @@ impl Scene {
     }
 }
 
-/// The distance to the sphere.
 fn sphere(ray: &Ray) -> Option<f32> {
     let half = ray.origin.dot(ray.direction);
     let discriminant = half * half - ray.origin.length_squared() + 1.0;
@@ -98,12 +92,11 @@ struct Diffuse {
 
 impl Bsdf for Diffuse {
     fn sample(&self, v: Vec3, _: f32, u: [f32; 2], _: Transport) -> Option<BsdfSample> {
-        let (sin, cos) = (TAU * u[1]).sin_cos();
-        let (r, z) = (u[0].sqrt(), (1.0 - u[0]).sqrt());
-        (v.z > 0.0 && z > 0.0).then(|| BsdfSample {
-            l: Vec3::new(r * cos, r * sin, z),
+        let l = by_cosine(u);
+        (v.z > 0.0 && l.z > 0.0).then(|| BsdfSample {
+            l,
             weight: self.albedo,
-            pdf: z / PI,
+            pdf: l.z / PI,
             event: Event::Reflection,
             delta: false,
             eta: 1.0,

@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use glam::DVec3;
 use microfacet_model::{MicrofacetDistribution, StudentT};
 
-use crate::plot::{Axis, Curve, Dash, Figure, Key, Method, Panel};
+use crate::plot::{Axis, Curve, Dash, Figure, Key, Panel};
 
 /// The shapes that are compared with γ = ∞; neighbours of like colours differ in their dashes.
 const GAMMAS: [f64; 4] = [30.0, 40.0, 50.0, 100.0];
@@ -19,7 +19,6 @@ const STEPS: usize = 46;
 /// Polar angles, at the middles of as many intervals of [0, π/2].
 const ANGLES: usize = 2000;
 
-/// The distance at one angle.
 struct At {
     theta: f64,
     /// |ΔD| per steradian, and D(0) of both.
@@ -70,7 +69,6 @@ fn largest(all: &[At], f: impl Fn(&At) -> f64) -> f64 {
     all.iter().map(f).fold(0.0, f64::max)
 }
 
-/// Over θ.
 fn mean(all: &[At], f: impl Fn(&At) -> f64) -> f64 {
     all.iter().map(f).sum::<f64>() / all.len() as f64
 }
@@ -94,7 +92,7 @@ pub(super) fn figure() -> Figure {
         let mut curves: Vec<Curve> =
             GAMMAS.into_iter().zip(DASHES).zip(&of_gamma).map(curve).collect();
         let printed = [(0.0, bound), (high, bound)];
-        curves.push(Curve::new(Key::Method(Method::Other), "printed for γ = 40", printed));
+        curves.push(Curve::new(Key::OTHER, "printed for γ = 40", printed));
         let highest = curves.iter().flat_map(|curve| &curve.points).map(|p| p.1);
         let y = Axis::linear("distance, per cent", 0.0, 1.05 * highest.fold(0.0, f64::max));
         Panel::new(title, Axis::linear("σ", 0.0, high), y, curves)
@@ -102,7 +100,6 @@ pub(super) fn figure() -> Figure {
     Figure { panels: MEASURES.map(panel).into(), columns: 3, panel: [430.0, 310.0] }
 }
 
-/// The distances at all angles.
 fn distances(sigma: f64, gamma: f64) -> Vec<At> {
     let of = |gamma| StudentT::new(sigma, gamma).expect("the figure's own parameters");
     let (family, limit) = (of(gamma), of(f64::INFINITY));

@@ -4,11 +4,10 @@ use microfacet_model::Shape;
 use microfacet_model::printed::{FORMS, Form};
 
 use crate::plot::figures::curve;
-use crate::plot::{Axis, Curve, Dash, Figure, Key, Method, Panel};
+use crate::plot::{Axis, Curve, Dash, Figure, Key, Panel};
 
-/// What each of [`FORMS`] is in a drawing.
-const METHODS: [Method; FORMS.len()] =
-    [Method::Hypergeometric, Method::Integer, Method::HalfInteger, Method::Rational];
+/// The colours of [`FORMS`].
+const KEYS: [Key; FORMS.len()] = [Key::Nth(1), Key::Nth(8), Key::Nth(4), Key::Nth(2)];
 
 fn name(form: &Form) -> String {
     format!("eq. {}, {}", form.equation.replace('-', "–"), form.name)
@@ -25,7 +24,7 @@ fn panel(gamma: f64) -> Panel {
     let shape = Shape::new(gamma).expect("the figure's own parameters");
     let x = Axis::log("cot θ/σ", 1e-2, 1e3);
     let is_finite = |form: &Form| (form.lambda)(gamma, 1.0).map(f64::is_finite);
-    let defined = FORMS.into_iter().zip(METHODS).filter(|(form, _)| is_finite(form) == Some(true));
+    let defined = FORMS.into_iter().zip(KEYS).filter(|(form, _)| is_finite(form) == Some(true));
     let overflows = FORMS.iter().find(|form| is_finite(form) == Some(false));
     let missing = overflows.map_or(String::new(), |form| format!("; {}: overflow", name(form)));
     let error = |form: Form, z: f64| {
@@ -36,8 +35,8 @@ fn panel(gamma: f64) -> Panel {
         // No error at all is drawn as half an ulp; what is no number stays so, and is not drawn.
         if relative < 1.1e-16 { 1.1e-16 } else { relative }
     };
-    let curves = defined.map(|(form, method)| {
-        let mut curve = curve(Key::Method(method), name(&form), &x, |z| error(form, z));
+    let curves = defined.map(|(form, key)| {
+        let mut curve = curve(key, name(&form), &x, |z| error(form, z));
         // What follows is noise of rounding.
         if let Some(lost) = curve.points.iter().position(|&(_, error)| error >= 1.0) {
             curve.points.truncate(lost + 1);
@@ -45,7 +44,7 @@ fn panel(gamma: f64) -> Panel {
             curve.points[lost].1 = 10.0;
         }
         // The series and the sums agree where neither loses digits.
-        if method != Method::Hypergeometric {
+        if key != KEYS[0] {
             curve.dash = Dash::Dashed;
         }
         curve

@@ -10,34 +10,24 @@ use microfacet_model::classic::Isotropic;
 use crate::plot::figures::curve;
 use crate::plot::{Axis, Curve, Dash, Figure, Key, Panel};
 
-/// The parameters of one of his figures. That of Schlick is Beckmann's.
-struct Set {
-    beckmann: f64,
-    blinn_phong: f64,
-    gauss: f64,
-    trowbridge_reitz: f64,
-    sawicki: f64,
-}
-
-/// Those of his figure 1, and of figure 2.
+/// What is drawn, Beckmann first, with the letters of parameters. Those that hide each other differ
+/// in their dashes.
+const DRAWN: [(DistributionKind, &str, Dash); 6] = [
+    (DistributionKind::Beckmann, "m", Dash::Solid),
+    (DistributionKind::BlinnPhong, "N", Dash::Dashed),
+    (DistributionKind::Gauss, "m", Dash::Dotted),
+    (DistributionKind::TrowbridgeReitz, "C", Dash::Solid),
+    (DistributionKind::Schlick, "m", Dash::Dashed),
+    (DistributionKind::Sawicki, "N", Dash::Solid),
+];
+/// Its parameters in his figure 1, and in figure 2. That of Schlick is Beckmann's.
 const SETS: [Set; 2] = [
-    Set {
-        beckmann: 0.4,
-        blinn_phong: 10.0,
-        gauss: 0.4364,
-        trowbridge_reitz: 0.4456,
-        sawicki: 12.04,
-    },
-    Set {
-        beckmann: 0.04464,
-        blinn_phong: 1000.0,
-        gauss: 0.04471,
-        trowbridge_reitz: 0.05354,
-        sawicki: 1174.3,
-    },
+    Set([0.4, 10.0, 0.4364, 0.4456, 0.4, 12.04]),
+    Set([0.04464, 1000.0, 0.04471, 0.05354, 0.04464, 1174.3]),
 ];
 
-/// A distribution with how it is drawn.
+struct Set([f64; DRAWN.len()]);
+
 struct Drawn {
     kind: DistributionKind,
     name: String,
@@ -52,22 +42,16 @@ impl Drawn {
 }
 
 impl Set {
-    /// Beckmann first. Those that hide each other differ in their dashes.
+    fn beckmann(&self) -> f64 {
+        self.0[0]
+    }
+
     fn all(&self) -> Vec<Drawn> {
-        use DistributionKind as Kind;
-        let of = |kind: Kind, parameter: &str, value: f64, dash| {
+        let of = |((kind, letter, dash), value): ((DistributionKind, &str, Dash), f64)| {
             let d = Named { kind, values: vec![value] }.build().expect("printed parameters");
-            let name = format!("{}, {parameter} = {value}", kind.name());
-            Drawn { kind, name, dash, d }
+            Drawn { kind, name: format!("{}, {letter} = {value}", kind.name()), dash, d }
         };
-        vec![
-            of(Kind::Beckmann, "m", self.beckmann, Dash::Solid),
-            of(Kind::BlinnPhong, "N", self.blinn_phong, Dash::Dashed),
-            of(Kind::Gauss, "m", self.gauss, Dash::Dotted),
-            of(Kind::TrowbridgeReitz, "C", self.trowbridge_reitz, Dash::Solid),
-            of(Kind::Schlick, "m", self.beckmann, Dash::Dashed),
-            of(Kind::Sawicki, "N", self.sawicki, Dash::Solid),
-        ]
+        DRAWN.into_iter().zip(self.0).map(of).collect()
     }
 
     /// Curves over β as far as the lobes reach, in degrees: of D/D(0), and that of Beckmann, which
@@ -79,7 +63,7 @@ impl Set {
         is_compared: bool,
         f: fn(f64, f64) -> f64,
     ) -> Panel {
-        let reach = (5.0 * self.beckmann).min(FRAC_PI_2).to_degrees();
+        let reach = (5.0 * self.beckmann()).min(FRAC_PI_2).to_degrees();
         let (x, all) = (Axis::linear("β in degrees", 0.0, reach), self.all());
         let curve = |of: &Drawn| {
             of.curve(&x, |at| {
@@ -88,7 +72,7 @@ impl Set {
             })
         };
         let curves: Vec<Curve> = all[usize::from(is_compared)..].iter().map(curve).collect();
-        Panel::new(format!("{title}, m = {}", self.beckmann), x, y, curves)
+        Panel::new(format!("{title}, m = {}", self.beckmann()), x, y, curves)
     }
 
     fn unit_forms(&self) -> Panel {
@@ -116,7 +100,7 @@ impl Set {
         let light = degrees.to_radians();
         let half = 0.5 * light;
         // Normals that view and light see, near the highlight.
-        let reach = 5.0 * self.beckmann;
+        let reach = 5.0 * self.beckmann();
         let low = (half - reach).max(light - FRAC_PI_2).max(-FRAC_PI_2);
         let high = (half + reach).min(FRAC_PI_2);
         let x = Axis::linear("distance from the centre, in radii", low.sin(), high.sin());
@@ -129,7 +113,7 @@ impl Set {
             of.curve(&x, |at| brightness(at.clamp(-1.0, 1.0).asin()) / peak)
         };
         let curves: Vec<Curve> = self.all().iter().map(curve).collect();
-        let title = format!("Light at {degrees}° to the view, Beckmann m = {}", self.beckmann);
+        let title = format!("Light at {degrees}° to the view, Beckmann m = {}", self.beckmann());
         Panel::new(title, x, Axis::linear("relative brightness", 0.0, 1.05), curves)
     }
 }
