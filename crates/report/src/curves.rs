@@ -17,8 +17,7 @@ use crate::plot::{Axis, Curve, Dash, Key, Panel};
 use crate::words::material::material;
 use crate::words::{number, range};
 
-/// Views of a curve from the normal to the horizon, denser at both: heavy tails fall steeply at the
-/// one, and all albedos rise at the other.
+/// Views of a curve, denser at the normal, where heavy tails fall, and at the horizon.
 const VIEWS: u32 = 45;
 /// The view of which captions state the numbers, in degrees.
 const STATED: f64 = 80.0;
@@ -154,8 +153,9 @@ fn figure(name: &str, lines: &[Line], what: &Markup) -> Markup {
             div.plots {
                 @for ([title, label], (curves, stated)) in PANELS.iter().zip(&drawn) {
                     @if !curves.is_empty() {
+                        @let y = Axis::linear(*label, 0.0, 1.0);
                         (plot(
-                            Panel::new(*title, views(), Axis::linear(*label, 0.0, 1.0), curves.clone()),
+                            Panel::new(*title, views(), y, curves.clone()),
                             &format!("{label}, of {name}. Seen at {STATED}°: {stated}."),
                         ))
                     }

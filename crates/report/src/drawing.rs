@@ -5,8 +5,7 @@ use maud::{Markup, PreEscaped, html};
 use crate::plot::{Figure, Panel};
 use crate::words;
 
-/// Pixels of a plot: two stand side by side on paper, three on a desk, and its letters can be read
-/// there and on a phone.
+/// Pixels of a plot: two stand side by side on paper, and its letters can be read on a phone.
 pub(super) const SIZE: [f64; 2] = [380.0, 290.0];
 
 /// A panel as an element of the page; `label` says what is seen.

@@ -60,10 +60,10 @@ fn materials(set: &Tables) -> Markup {
         &["bytes"],
     ];
     let rows = html! {
-        @for Served { name, sigma, shape, masking, fresnel, lobe, albedo, bytes: size } in shown {
+        @for Served { name, words, lobe, albedo, bytes: size } in shown {
             tr {
                 th scope="row" { bdi { (name) } }
-                @for cell in [sigma, shape, masking, fresnel] { td { (symbols(cell)) } }
+                @for cell in words { td { (symbols(cell)) } }
                 @for part in [lobe, albedo] { td { (part.what) } }
                 td.number { (bytes(*size)) }
             }
@@ -85,8 +85,8 @@ fn skipped(set: &Tables, all: &[Served]) -> Markup {
         for (of, part) in [("visible normals", &one.lobe), ("albedo", &one.albedo)] {
             let Some(why) = &part.skipped else { continue };
             match reasons.iter_mut().find(|(known, reason, _)| *known == of && reason == why) {
-                Some((.., names)) => names.push(&one.name),
-                None => reasons.push((of, why, vec![&one.name])),
+                Some((.., names)) => names.push(one.name),
+                None => reasons.push((of, why, vec![one.name])),
             }
         }
     }

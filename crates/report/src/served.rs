@@ -12,13 +12,10 @@ use crate::words::material::fresnel;
 use crate::words::verdict::albedo_reason;
 use crate::words::{number, range};
 
-#[derive(Clone, Debug)]
-pub(super) struct Served {
-    pub(super) name: String,
-    pub(super) sigma: String,
-    pub(super) shape: String,
-    pub(super) masking: String,
-    pub(super) fresnel: String,
+pub(super) struct Served<'a> {
+    pub(super) name: &'a str,
+    /// σ, γ or the distribution, masking and the Fresnel term.
+    pub(super) words: [String; 4],
     /// Masking and visible normals.
     pub(super) lobe: Part,
     pub(super) albedo: Part,
@@ -26,7 +23,6 @@ pub(super) struct Served {
 }
 
 /// What serves a part of a material.
-#[derive(Clone, Debug)]
 pub(super) struct Part {
     /// In few words.
     pub(super) what: &'static str,
@@ -42,15 +38,14 @@ impl Part {
     }
 }
 
-pub(super) fn served(set: &Tables) -> Vec<Served> {
+pub(super) fn served(set: &Tables) -> Vec<Served<'_>> {
     let wishes = wishes(&recipe_of(&set.provenance().materials));
     let default = Tables::embedded();
     let one = |entry| of(set, &default, entry, &wishes);
     set.provenance().materials.iter().map(one).collect()
 }
 
-/// What a plan of the recipe, which the set keeps, decides on albedos: by name; of none if there is
-/// no recipe, or none that can be planned.
+/// What a plan of the recipe that the set keeps decides on albedos, if it can be planned.
 fn wishes(recipe: &str) -> BTreeMap<String, AlbedoVerdict> {
     let Ok(scene) = Scene::from_recipe_str(recipe) else { return BTreeMap::new() };
     let Ok(plan) = Plan::new(&scene, Options::default()) else { return BTreeMap::new() };
@@ -58,25 +53,26 @@ fn wishes(recipe: &str) -> BTreeMap<String, AlbedoVerdict> {
     names.zip(plan.albedo_verdicts).collect()
 }
 
-fn of(
+fn of<'a>(
     set: &Tables,
     default: &Tables,
-    entry: &MaterialEntry,
+    entry: &'a MaterialEntry,
     wishes: &BTreeMap<String, AlbedoVerdict>,
-) -> Served {
+) -> Served<'a> {
     let [x, y] = entry.lobe.sigmas().map(range);
     let own = entry.lobe.distribution.clone();
     let mut shape = own.unwrap_or_else(|| format!("gamma {}", range(entry.lobe.gamma)));
     if let Some(theta) = entry.lobe.theta {
         shape += &format!(", tilted by theta {}", theta.map(number).join(", "));
     }
-    let smooth = entry.lobe.is_smooth();
+    let mut masking = entry.masking().to_string();
+    if entry.lobe.is_smooth() {
+        [shape, masking] = ["-", "-"].map(String::from);
+    }
+    let sigma = if x == y { x } else { format!("{x} and {y}") };
     Served {
-        name: entry.name.clone(),
-        sigma: if x == y { x } else { format!("{x} and {y}") },
-        shape: if smooth { "-".into() } else { shape },
-        masking: if smooth { "-".into() } else { entry.masking().to_string() },
-        fresnel: fresnel(entry.fresnel.as_ref()),
+        name: &entry.name,
+        words: [sigma, shape, masking, fresnel(entry.fresnel.as_ref())],
         lobe: lobe(set, default, entry),
         albedo: albedo(set, default, entry, wishes.get(&entry.name)),
         bytes: tables_of(set, entry).map(Table::stored_bytes).sum(),

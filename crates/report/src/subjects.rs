@@ -7,8 +7,7 @@ use microfacet_tables::MaterialEntry;
 use super::drawing::{symbols, unbroken};
 use crate::words::number;
 
-/// Most shapes whose visible normals a page holds. Light that is reflected by other shapes is drawn
-/// by the next of heavier tails.
+/// Most shapes whose visible normals a page holds; others are drawn by the next heavier tails.
 const SLICES: usize = 8;
 /// Most shapes that a page lets choose from.
 const STOPS: usize = 64;

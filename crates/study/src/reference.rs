@@ -187,8 +187,7 @@ impl Truth {
     }
 }
 
-/// Below this γ the embedded tables are without the heavy part of the distribution, so that u₁ is
-/// mapped in another way than by the inverse of the whole CDF.
+/// Below this γ the embedded tables lack the heavy part, and u₁ is not mapped by the whole CDF.
 const PEELED_BELOW: f64 = 1.8;
 
 // The rows.

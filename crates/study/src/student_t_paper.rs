@@ -75,8 +75,7 @@ fn difference(gamma: f64, other: impl Fn(f64, f64) -> f64) -> Result<f64, Box<dy
     Ok((0..90).map(at).fold(0.0, f64::max) / material.d(DVec3::Z))
 }
 
-/// ∫ D(m) (m·n) dm by the trapezoidal rule over the azimuth and the logarithm of tan θ, which
-/// converges faster than any power since both ends and the period are smooth.
+/// ∫ D(m) (m·n) dm by the trapezoidal rule over the azimuth and ln tan θ, where it converges fast.
 fn integral(material: &StudentT) -> f64 {
     const AZIMUTHS: u32 = 256;
     const STEP: f64 = 1.0 / 16.0;

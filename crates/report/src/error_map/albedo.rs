@@ -11,8 +11,7 @@ use microfacet_tables::{Axis, Kind, Mapping, Provenance, Table};
 
 use super::{Place, Quantity, Span, Unmeasured};
 
-/// A node as accurate as this share of the table's largest error tells errors apart; no less than
-/// that of high quality, and no more than that of a draft.
+/// Error of a node, as a share of the table's largest; between those of high quality and a draft.
 const FINE: f64 = 1.0 / 300.0;
 const TOLERANCES: [f64; 2] = [1e-7, 1e-5];
 

@@ -85,8 +85,7 @@ pub(super) struct Layout {
     pub(super) pixels: [usize; 2],
     each: [usize; 2],
     counts: [usize; AXES],
-    /// The axes that are not shown: those that stay at a value, and those of which the largest
-    /// error is shown.
+    /// The axes that are not shown and stay at a value, and those of the largest error.
     pub(super) fixed: Vec<usize>,
     pub(super) over: Vec<usize>,
 }
@@ -134,8 +133,7 @@ impl Layout {
         self.counts[1..].iter().product()
     }
 
-    /// All places with the pixels that they lie in, row by row from the low end of y; the last axis
-    /// fastest.
+    /// All places with their pixels, row by row from the low end of y; the last axis fastest.
     pub(super) fn places(&self, table: &Table, spans: &[Span]) -> Vec<(Place, usize)> {
         let mut all: Vec<(Place, usize)> = vec![([0.0; AXES], 0)];
         for axis in 0..AXES {
@@ -162,9 +160,8 @@ impl Layout {
         })
     }
 
-    /// Shares of an axis, evenly spaced with both ends, one of them moved to where the certificate
-    /// has its largest error. That is the only one, or else the middle, of an axis that is not
-    /// shown and stays at a value.
+    /// Even shares of an axis with both ends, the nearest to the certificate's largest error moved
+    /// there; that place or the middle alone of an axis that stays at a value.
     fn along(&self, axis: usize, worst: Option<f64>) -> Vec<f64> {
         let count = self.counts[axis];
         if count == 1 {

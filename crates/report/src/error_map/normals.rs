@@ -80,8 +80,8 @@ fn ascending(share: f64) -> f64 {
     1.0 - share
 }
 
-/// The table, and of the tables that a lobe is made of those of other kinds which it overlaps. More
-/// than one of its own kind would leave open which one is read.
+/// The table, and those of other kinds that a lobe is read from with it. With another of its own
+/// kind it would be open which one is read.
 fn with_others(set: &Tables, table: &Table) -> Vec<Table> {
     let overlaps = |other: &Table| {
         let [a, b] = [other, table].map(|table| table.subject.lobe.gamma);

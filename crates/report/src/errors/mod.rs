@@ -88,7 +88,8 @@ pub(super) fn section(source: &Source, meter: &Meter) -> Result<Markup, ReportEr
                 "drawn, and of the share of light in an albedo. Each pixel is the largest of the "
                 "errors measured in it; black is about the rounding of single precision."
             }
-            div class="scale" style="max-width: 24rem" { (PreEscaped(bar(&scale, SIZE[0]).inline_svg("the scale of the errors"))) }
+            @let bar = bar(&scale, SIZE[0]).inline_svg("the scale of the errors");
+            div class="scale" style="max-width: 24rem" { (PreEscaped(bar)) }
             div class="figures" {
                 @for (table, map) in drawn() { (figure(table, map, &scale)) }
             }

@@ -131,8 +131,7 @@ impl Axis {
             .collect()
     }
 
-    /// 1, 2 and 5 times powers of ten where there is room; else the powers; else every other, and
-    /// so on.
+    /// 1, 2 and 5 times powers of ten where there is room; else the powers, or every n-th.
     fn log_ticks(&self, room: f64) -> Vec<Tick> {
         let [low, high] = self.ends();
         let decades = high - low;

@@ -16,8 +16,7 @@ pub(super) struct Clipped {
     pub(super) exits: Vec<Place>,
 }
 
-/// Cuts a curve. Parts are never joined across what is outside, nor across a point without a place
-/// (NaN), where no mark stands either.
+/// Cuts a curve. Parts are not joined across what is outside, nor across NaN, which has no mark.
 pub(super) fn clip(points: impl Iterator<Item = Place>) -> Clipped {
     let mut clipped = Clipped::default();
     let mut run = Vec::new();
@@ -69,8 +68,7 @@ fn side(x: f64) -> i32 {
     i32::from(x > 1.0 + EDGE) - i32::from(x < -EDGE)
 }
 
-/// Where the line from a point inside to one outside meets the edge; for an infinite one straight
-/// above or below.
+/// Where the line from a point inside to one outside, perhaps at infinity, meets the edge.
 fn crossing(inside: Place, outside: Place) -> Place {
     let edge = if side(outside[1]) > 0 { 1.0 } else { 0.0 };
     let part = ((edge - inside[1]) / (outside[1] - inside[1])).clamp(0.0, 1.0);

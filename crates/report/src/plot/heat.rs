@@ -27,8 +27,7 @@ pub struct HeatMap {
 
 /// Shades that maps and their bars are drawn in: so few take less bytes, and can be told apart.
 const SHADES: usize = 24;
-/// The ring: its radius, and the width of its line and of the dark one under it. Both colours stay
-/// in light and dark, for so do those beneath.
+/// The ring: its radius, and widths and colours of its lines, the same on light and dark pages.
 const RADIUS: f64 = 7.0;
 const RING: [(f64, Color); 2] = [(4.5, [24, 24, 24]), (2.0, [250, 250, 250])];
 

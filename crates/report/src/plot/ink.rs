@@ -108,8 +108,8 @@ impl Key {
     }
 }
 
-/// A colour for dark paper in place of one for white: its hue, mixed with the more white the darker
-/// it is. Lighter colours stay lighter, so that ramps keep their order.
+/// A colour for dark paper in place of one for white: mixed with the more white the darker it is,
+/// so that ramps keep their order.
 pub(super) fn on_dark(color: Color) -> Color {
     /// Of black.
     const WHITE: f64 = 0.42;

@@ -15,8 +15,7 @@ const ASIDE: [f64; 4] = [0.0, 16.0, 40.0, 80.0];
 /// Half the side of the squares that stand for a line, and how far apart they are.
 const PEN: f64 = 1.5;
 const STRIDE: f64 = 3.0;
-/// What it costs, in pixels of distance from the point, to hide a name or a point or to leave the
-/// panel, and to hide a part of a line.
+/// The cost, in pixels of distance, of hiding a name or a point, and of hiding a part of a line.
 const HIDES: f64 = 4000.0;
 const CROSSES: f64 = 8.0;
 

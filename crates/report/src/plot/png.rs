@@ -47,8 +47,7 @@ fn encode(rgb: &[u8], [width, height]: [u32; 2], filter: FilterType) -> ImageRes
     Ok(file.into_inner())
 }
 
-/// An image of whole lines of pixels, as a file by itself. Most have few colours, of which the
-/// differences of neighbours, as filters take them, have more values.
+/// An image of whole lines. Most have few colours, which filters would turn into more values.
 pub(super) fn of_pixels(pixels: &[Color], columns: usize) -> Vec<u8> {
     let size = [columns, pixels.len() / columns].map(|edge| edge as u32);
     encode(pixels.as_flattened(), size, FilterType::NoFilter).expect("whole lines, in memory")

@@ -26,8 +26,8 @@ fn em() -> f64 {
     f64::from(SANS.units_per_em().unwrap_or(2048.0))
 }
 
-/// The outlines of a text, each with where its letter stands, in ems from the start of the
-/// baseline, y upwards; and the length of an em in the units of the outlines.
+/// The length of an em in units of outlines, and those of a text's letters, y upwards, with where
+/// each stands in ems.
 pub(super) fn outlines(text: &str) -> (f64, Vec<(f64, Vec<OutlineCurve>)>) {
     let mut x = 0.0;
     let letters = text.chars().filter_map(|c| {

@@ -82,8 +82,7 @@ pub(super) fn metal_of(name: &str) -> Option<Metal> {
     name.split(|c: char| !c.is_alphabetic()).find_map(|word| word.parse().ok())
 }
 
-/// The reflectance of a material as the sphere has it: its own, that of the metal in its name, or
-/// [`UNSTATED`].
+/// The reflectance on the sphere: the material's own, of the metal in its name, or [`UNSTATED`].
 fn fresnel(shown: &Shown) -> Reflectance {
     let own = shown.entry.as_ref().and_then(conductor_of);
     own.unwrap_or_else(|| metal_of(&shown.name).unwrap_or(UNSTATED).into())

@@ -37,8 +37,7 @@ fn lamps() -> [Lamp; 3] {
     ]
 }
 
-/// Radiance of the dome: at the zenith, at the horizon, and what the backdrop adds to that about a
-/// direction.
+/// Radiance of the dome at the zenith and the horizon, and of the backdrop about a direction.
 const ZENITH: Vec3 = Vec3::new(0.22, 0.217, 0.215);
 const HORIZON: Vec3 = Vec3::new(0.055, 0.053, 0.052);
 const GLOW: Vec3 = Vec3::new(0.27, 0.262, 0.256);

@@ -104,8 +104,7 @@ fn the_albedo_texture_is_that_of_the_tables() {
 
 /// One of the 255 levels of a picture, of light that is white.
 const ALBEDO: f64 = 1.0 / 255.0;
-/// The cosine of the views that a pixel of the sphere's edge may have; below it the albedo of a
-/// smooth lobe falls within a texel.
+/// Below this cosine the albedo of a smooth lobe falls within a texel.
 const LEAST: f64 = 0.02;
 
 #[test]

@@ -11,8 +11,7 @@ use crate::spheres::scene::{Ray, Scene};
 
 /// A diamond reflects some 83 % from inside, so that 1e-8 of the light is lost here.
 const MOST_BOUNCES: usize = 100;
-/// From here on paths end or split at random. Weights above 1 multiply inside a compensated
-/// diamond, to a thousand and more, unless the path splits.
+/// From here on paths end or split at random: weights of a compensated diamond multiply to 1000.
 const ROULETTE: usize = 4;
 
 /// Follows light backwards from the camera.
@@ -27,8 +26,8 @@ impl Tracer<'_> {
         self.arriving(ray, f32::INFINITY, Vec3::ONE, 0)
     }
 
-    /// The radiance along a ray that was drawn with a density per steradian, infinite if no lamp
-    /// could be drawn in its place, after some bounces that left a `share` of the light.
+    /// The radiance along a ray that was drawn with a density per steradian, infinite after a
+    /// mirror, after bounces that left a `share` of the light.
     fn arriving(&mut self, ray: &Ray, pdf: f32, share: Vec3, bounces: usize) -> Vec3 {
         let sky = &self.scene.sky;
         let Some(hit) = self.scene.hit(ray) else {

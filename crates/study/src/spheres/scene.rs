@@ -13,8 +13,7 @@ use microfacet_sampler::{AnyBsdf, Bsdf, BsdfSample, Transport};
 use crate::spheres::sky::Sky;
 
 const FLOOR: f32 = -1.0;
-/// Edge of the floor's squares: so large that one sees them through rough diamond. Four of them
-/// meet under the sphere.
+/// Edge of the floor's squares: they are seen through rough diamond. Four meet under the sphere.
 const SQUARE: f32 = 2.0;
 /// Rays that leave a surface start on it, to the rounding of this scene's coordinates.
 const NEAREST: f32 = 1e-4;

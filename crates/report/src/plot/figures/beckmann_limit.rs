@@ -35,8 +35,7 @@ impl At {
     }
 }
 
-/// A measure of distance: its name, the bound that is printed, in %, and how the distances at all
-/// angles make one.
+/// A measure of distance: its name, the printed bound in %, and its value of those at all angles.
 type Measure = (&'static str, f64, fn(&[At]) -> f64);
 
 const BOUND_OF_D: f64 = 0.5;

@@ -18,8 +18,7 @@ pub(super) fn figure() -> Figure {
     Figure::new([3.0, 10.5, 40.0, 150.0].map(panel))
 }
 
-/// The relative error of Λ in the forms that are defined at γ, over z = cot θ/σ, as far as a form
-/// has a digit right.
+/// The relative errors of Λ over z = cot θ/σ, as far as a form has a digit right.
 fn panel(gamma: f64) -> Panel {
     let shape = Shape::new(gamma).expect("the figure's own parameters");
     let x = Axis::log("cot θ/σ", 1e-2, 1e3);

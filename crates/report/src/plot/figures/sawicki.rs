@@ -10,8 +10,7 @@ use microfacet_model::classic::Isotropic;
 use crate::plot::figures::curve;
 use crate::plot::{Axis, Curve, Dash, Figure, Key, Panel};
 
-/// What is drawn, Beckmann first, with the letters of parameters. Those that hide each other differ
-/// in their dashes.
+/// What is drawn, with the letters of parameters. Curves that hide each other differ in dashes.
 const DRAWN: [(DistributionKind, &str, Dash); 6] = [
     (DistributionKind::Beckmann, "m", Dash::Solid),
     (DistributionKind::BlinnPhong, "N", Dash::Dashed),
