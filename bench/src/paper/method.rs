@@ -30,19 +30,19 @@ pub(super) enum Method {
 }
 
 impl Method {
-    const fn parts(self) -> (&'static str, plot::Method) {
-        use plot::Method as Plotted;
+    /// The name, and the colour: that of the same method in the figures of the printed formulas.
+    const fn parts(self) -> (&'static str, Key) {
         match self {
-            Self::Hypergeometric => ("eq. 13-15, hypergeometric", Plotted::Hypergeometric),
-            Self::Integer => ("eq. 21, integer", Plotted::Integer),
-            Self::HalfInteger => ("eq. 21, half-integer", Plotted::HalfInteger),
-            Self::Rational => ("eq. 22-23, rational", Plotted::Rational),
-            Self::Beta => ("beta function, prepared", Plotted::Other),
-            Self::Table => ("table", Plotted::Table),
-            Self::Ggx => ("GGX, closed form", Plotted::Ggx),
-            Self::Beckmann => ("Beckmann, closed form", Plotted::Beckmann),
-            Self::Inversion => ("inversion of the CDF, f64", Plotted::Inversion),
-            Self::Rejection => ("exact by rejection, f64", Plotted::Rejection),
+            Self::Hypergeometric => ("eq. 13-15, hypergeometric", Key::Nth(1)),
+            Self::Integer => ("eq. 21, integer", Key::Nth(8)),
+            Self::HalfInteger => ("eq. 21, half-integer", Key::Nth(4)),
+            Self::Rational => ("eq. 22-23, rational", Key::Nth(2)),
+            Self::Beta => ("beta function, prepared", Key::OTHER),
+            Self::Table => ("table", Key::TABLE),
+            Self::Ggx => ("GGX, closed form", Key::Nth(5)),
+            Self::Beckmann => ("Beckmann, closed form", Key::Nth(6)),
+            Self::Inversion => ("inversion of the CDF, f64", Key::Nth(3)),
+            Self::Rejection => ("exact by rejection, f64", Key::Nth(7)),
         }
     }
 
@@ -50,30 +50,13 @@ impl Method {
         self.parts().0
     }
 
-    pub(super) fn key(self) -> Key {
-        Key::Method(self.parts().1)
+    pub(super) const fn key(self) -> Key {
+        self.parts().1
     }
 
     /// Whether it has one shape, which stands for all in a comparison.
     pub(super) const fn is_reference(self) -> bool {
         matches!(self, Self::Ggx | Self::Beckmann)
-    }
-
-    pub(super) fn key(self) -> Key {
-        // In the order of the methods, as the figures of the printed formulas have them.
-        const COLORS: [Key; 10] = [
-            Key::Nth(1),
-            Key::Nth(8),
-            Key::Nth(4),
-            Key::Nth(2),
-            Key::OTHER,
-            Key::TABLE,
-            Key::Nth(5),
-            Key::Nth(6),
-            Key::Nth(3),
-            Key::Nth(7),
-        ];
-        COLORS[self as usize]
     }
 }
 
