@@ -54,6 +54,14 @@ fn refuses(folder: &Path, text: &str, part: &str) {
     assert!(message.contains(part), "{text}: {message}");
 }
 
+/// Standard output of a script that must succeed.
+fn runs(folder: &Path, text: &str) -> Vec<u8> {
+    let output = script(folder, text);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{text}: {message}");
+    output.stdout
+}
+
 /// A folder with a FIFO, a sparse file of 5 GB, and recipes.
 fn workshop() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
@@ -118,9 +126,8 @@ fn endless_standard_input_is_refused() {
     let more = ",".repeat(500_000);
     let rows = format!("{header}{more}\n{}", format!("0.3,0.3,3,1,0{more}\n").repeat(100));
     fs::write(at.join("wide.csv"), rows).unwrap();
-    let output = script(at, "\"$0\" query g1 --method table --input - < wide.csv");
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-    assert_eq!(output.stdout.iter().filter(|&&byte| byte == b'\n').count(), 101);
+    let answers = runs(at, "\"$0\" query g1 --method table --input - < wide.csv");
+    assert_eq!(answers.iter().filter(|&&byte| byte == b'\n').count(), 101);
 }
 
 #[test]
@@ -129,11 +136,8 @@ fn fit_reads_standard_input() {
     let rows: String =
         (0..=80).map(|t| format!("{t},{}\n", (-0.002 * f64::from(t * t)).exp())).collect();
     fs::write(folder.path().join("m.csv"), rows).unwrap();
-    let [file, piped] = ["m.csv", "- < m.csv"].map(|input| {
-        let output = script(folder.path(), &format!("\"$0\" fit --degrees --input {input}"));
-        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-        output.stdout
-    });
+    let fit = |input| runs(folder.path(), &format!("\"$0\" fit --degrees --input {input}"));
+    let [file, piped] = ["m.csv", "- < m.csv"].map(fit);
     assert_eq!(file, piped);
 }
 
@@ -142,23 +146,20 @@ fn a_cache_entry_that_cannot_be_read_is_baked_again() {
     let folder = workshop();
     let at = folder.path();
     let bake = "\"$0\" bake gold.toml --out out --cache cache --quality draft";
-    assert_eq!(script(at, bake).status.code(), Some(0));
-    let entries = names(&at.join("cache"));
+    runs(at, bake);
+    let entry = at.join("cache").join(&names(&at.join("cache"))[0]);
     for hostile in ["fifo", "sparse", "/dev/zero"] {
-        let entry = at.join("cache").join(&entries[0]);
         fs::remove_file(&entry).unwrap();
         symlink(at.join(hostile), &entry).unwrap();
-        let output = script(at, bake);
-        let text = String::from_utf8_lossy(&output.stdout);
-        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        let text = String::from_utf8(runs(at, bake)).unwrap();
         assert!(!text.contains("from the cache"), "{text}");
     }
     // What killed bakes leave there goes with the next entry, once it is old.
     let partial = at.join("cache/.microfacet-bake-x.partial");
     let file = fs::File::create(&partial).unwrap();
     file.set_modified(std::time::SystemTime::now() - Duration::from_secs(100_000)).unwrap();
-    fs::remove_file(at.join("cache").join(&entries[0])).unwrap();
-    assert_eq!(script(at, bake).status.code(), Some(0));
+    fs::remove_file(&entry).unwrap();
+    runs(at, bake);
     assert!(!partial.exists());
 }
 
@@ -174,13 +175,7 @@ fn outputs_go_where_links_lead_and_keep_their_mode() {
         symlink(&file, at.join(&link)).unwrap();
         // Dangling, then to a private file.
         for _ in 0..2 {
-            let output = script(at, &format!("{command} {link}"));
-            assert_eq!(
-                output.status.code(),
-                Some(0),
-                "{}",
-                String::from_utf8_lossy(&output.stderr)
-            );
+            runs(at, &format!("{command} {link}"));
             assert!(fs::symlink_metadata(at.join(&link)).unwrap().is_symlink());
             fs::set_permissions(&file, fs::Permissions::from_mode(0o600)).unwrap();
         }
@@ -191,8 +186,7 @@ fn outputs_go_where_links_lead_and_keep_their_mode() {
         refuses(at, &format!("{command} fifo.svg"), "FIFO");
         refuses(at, &format!("{command} there.svg"), "is a folder");
         assert!(fs::metadata(at.join("fifo")).unwrap().file_type().is_fifo());
-        let output = script(at, &format!("{command} null.svg"));
-        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        runs(at, &format!("{command} null.svg"));
         assert!(fs::metadata("/dev/null").unwrap().file_type().is_char_device());
     }
     refuses(at, &format!("{SAMPLE} fifo"), "`--out -` for standard output");
@@ -212,20 +206,26 @@ fn modes_of_a_set_are_kept() {
         bake(at, "glass.toml", "out", format);
         assert_eq!(fs::metadata(&file).unwrap().mode() & 0o777, 0o640);
         assert_ne!(fs::read(&file).unwrap(), before);
-        // One protected file protects the set.
+        // A protected file protects its set: it is neither replaced nor removed.
         fs::set_permissions(&file, fs::Permissions::from_mode(0o440)).unwrap();
-        let before: Vec<_> = names(&at.join("out"));
-        let again = ["bake", "gold.toml", "--out", "out", "--quality", "draft", "--format", format];
-        let message = refused(at, &again);
-        assert!(message.contains(&format!("{name}: is write-protected")), "{message}");
-        assert_eq!(names(&at.join("out")), before);
+        let again = |recipe, format| {
+            let to = ["--out", "out", "--quality", "draft", "--format", format];
+            refused(at, &[&["bake", recipe][..], &to].concat())
+        };
+        for recipe in ["gold.toml", "glass.toml"] {
+            for format in ["safetensors", "exr"] {
+                let message = again(recipe, format);
+                assert!(message.contains(&format!("{name}: is write-protected")), "{message}");
+                assert_eq!(names(&at.join("out")), [&name[..]]);
+            }
+        }
         // That is known before anything is read or baked.
         let message = refused(at, &["bake", "missing.toml", "--out", "out"]);
         assert!(message.contains("is write-protected"), "{message}");
         assert!(ok(at, &["inspect", "out"]).contains("glass"));
         fs::remove_file(&file).unwrap();
         fs::rename(at.join("fifo"), &file).unwrap();
-        let message = refused(at, &again);
+        let message = again("gold.toml", format);
         assert!(message.contains("is a FIFO"), "{message}");
     }
 }
@@ -236,15 +236,9 @@ fn normals_go_to_standard_output() {
     let at = folder.path();
     let piped = script(at, &format!("{SAMPLE} - | cat"));
     assert!(String::from_utf8_lossy(&piped.stderr).contains("1000 normals on standard output"));
-    ok(
-        at,
-        &[
-            "sample", "--sigma", "0.3", "--gamma", "3", "--theta", "1", "--count", "1000", "--out",
-            "n",
-        ],
-    );
+    runs(at, &format!("{SAMPLE} n"));
     assert_eq!(piped.stdout, fs::read(at.join("n")).unwrap());
-    // Nobody reads on.
+    // The pipe is closed at once.
     let output = script(at, &format!("({SAMPLE} -; echo $? > status) | true"));
     assert_eq!(fs::read_to_string(at.join("status")).unwrap(), "0\n", "{output:?}");
     assert!(!at.join("-").exists());
@@ -262,33 +256,13 @@ fn only_the_set_of_a_folder_is_replaced() {
         fs::write(out.join(name), name).unwrap();
     }
     symlink(at.join("fifo"), out.join("fifo.exr")).unwrap();
-    let all = |set: &[&str]| {
-        let mut all: Vec<String> =
-            [&others[..], &["fifo.exr"], set].concat().into_iter().map(String::from).collect();
+    for (material, format) in [("gold", "exr"), ("glass", "safetensors"), ("gold", "exr")] {
+        bake(at, &format!("{material}.toml"), "out", format);
+        let set = format!("tables.{format}");
+        let mut all = [&others[..], &["fifo.exr", &set]].concat();
         all.sort();
-        all
-    };
-    bake(at, "gold.toml", "out", "exr");
-    assert_eq!(names(&out), all(&["tables.exr"]));
-    bake(at, "glass.toml", "out", "safetensors");
-    assert_eq!(names(&out), all(&["tables.safetensors"]));
-    assert!(ok(at, &["inspect", "out"]).contains("glass"));
-    bake(at, "gold.toml", "out", "exr");
-    assert_eq!(names(&out), all(&["tables.exr"]));
-    assert!(ok(at, &["inspect", "out"]).contains("gold"));
-}
-
-/// Neither replaced nor removed.
-#[test]
-fn a_protected_file_protects_its_set() {
-    let folder = workshop();
-    let at = folder.path();
-    bake(at, "gold.toml", "out", "exr");
-    fs::set_permissions(at.join("out/tables.exr"), fs::Permissions::from_mode(0o444)).unwrap();
-    for recipe in ["gold.toml", "glass.toml"] {
-        let message = refused(at, &["bake", recipe, "--out", "out", "--quality", "draft"]);
-        assert!(message.contains("tables.exr: is write-protected"), "{message}");
-        assert_eq!(names(&at.join("out")), ["tables.exr"]);
+        assert_eq!(names(&out), all);
+        assert!(ok(at, &["inspect", "out"]).contains(material));
     }
 }
 

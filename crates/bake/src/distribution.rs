@@ -67,10 +67,7 @@ pub enum Distribution {
 }
 
 impl Distribution {
-    /// Builds the distribution.
-    ///
-    /// # Errors
-    /// As [`DistributionKind::build`].
+    /// Builds the distribution, with the errors of [`DistributionKind::build`].
     pub fn build(&self) -> Result<Box<dyn Isotropic>, DistributionError> {
         match self {
             Self::Named(named) => named.build(),
@@ -107,43 +104,38 @@ const fn measured(angles: Angles) -> &'static str {
 }
 
 /// Why a distribution could not be made.
-#[derive(Clone, PartialEq)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 pub enum DistributionError {
     /// No distribution has this name.
+    #[error(
+        "distribution `{}` is not known; there are {}",
+        .0,
+        DistributionKind::ALL.map(DistributionKind::name).join(", ")
+    )]
     Unknown(String),
     /// The wrong number of parameters, or a parameter that is not a number.
+    #[error(
+        "`{}`: {} is written {}:{}, each a number", .1, .0, .0, .0.parameters().join(",")
+    )]
     Parameters(DistributionKind, String),
     /// A parameter outside its range, with the model's message.
+    #[error("{0}: {1}")]
     Range(DistributionKind, String),
     /// An anisotropic distribution where an isotropic one is required.
+    #[error(
+        "ashikhmin-shirley with exponents {0} and {1} is anisotropic: its D depends on two angles \
+         and that of the others on one; give equal exponents, or treat each axis as a blinn-phong"
+    )]
     Dimension(f64, f64),
-}
-
-impl fmt::Display for DistributionError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Unknown(name) => {
-                let names: Vec<&str> =
-                    DistributionKind::ALL.iter().map(|kind| kind.name()).collect();
-                write!(f, "distribution `{name}` is not known; there are {}", names.join(", "))
-            }
-            Self::Parameters(kind, given) => {
-                let names = kind.parameters().join(",");
-                write!(f, "`{given}`: {} is written {0}:{names}, each a number", kind.name())
-            }
-            Self::Range(kind, why) => write!(f, "{}: {why}", kind.name()),
-            Self::Dimension(nx, ny) => write!(
-                f,
-                "ashikhmin-shirley with exponents {nx} and {ny} is anisotropic: its D depends on two angles and that of the \
-                 others on one; give equal exponents, or treat each axis as a blinn-phong"
-            ),
-        }
-    }
 }
 
 microfacet_core::debug_in_words!(DistributionError);
 
-impl std::error::Error for DistributionError {}
+impl fmt::Display for DistributionKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
 
 impl DistributionKind {
     /// All kinds.
@@ -282,10 +274,7 @@ impl DistributionKind {
 }
 
 impl Named {
-    /// Builds the distribution.
-    ///
-    /// # Errors
-    /// As [`DistributionKind::build`].
+    /// Builds the distribution, with the errors of [`DistributionKind::build`].
     pub fn build(&self) -> Result<Box<dyn Isotropic>, DistributionError> {
         self.kind.build(&self.values)
     }

@@ -59,7 +59,7 @@ pub fn open_or_stdin(path: &Path, limit: u64) -> io::Result<Box<dyn Read>> {
     }
     match open(path, limit) {
         Ok(file) => Ok(Box::new(Limited::new(file, limit))),
-        // A pipe is read where it cannot hang unasked.
+        // A pipe may hang: it is read where it was asked for.
         Err(why) if std::fs::metadata(path).is_ok_and(|found| !found.is_file()) => {
             Err(io::Error::new(why.kind(), format!("{why}, or `-` for standard input")))
         }
@@ -124,10 +124,7 @@ pub(crate) fn name(kind: std::fs::FileType) -> &'static str {
     if kind.is_dir() { "a folder" } else { "no regular file" }
 }
 
-/// The content of a regular file of at most `limit` bytes.
-///
-/// # Errors
-/// As [`open`].
+/// The content of a regular file of at most `limit` bytes, with the errors of [`open`].
 pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     // Files of the kernel report no size, and a file may grow while it is read.
@@ -138,10 +135,7 @@ pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The content of a regular text file of at most `limit` bytes.
-///
-/// # Errors
-/// As [`open`], or that it is not UTF-8.
+/// The content of a regular file of at most `limit` bytes of UTF-8, with the errors of [`open`].
 pub fn read_text(path: &Path, limit: u64) -> io::Result<String> {
     let text = String::from_utf8(unmarked(&read(path, limit)?).to_vec());
     text.map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "is no text in UTF-8"))
@@ -158,10 +152,7 @@ pub fn unmarked(text: &[u8]) -> &[u8] {
 /// A stream of text without its byte order mark.
 pub(crate) type Unmarked<R> = io::Chain<io::Cursor<Vec<u8>>, R>;
 
-/// A stream of text without its byte order mark; its first bytes are read at once.
-///
-/// # Errors
-/// Those of the stream.
+/// A stream of text without its byte order mark; its first bytes are read at once, or its error.
 pub fn unmarked_stream<R: Read>(mut input: R) -> io::Result<Unmarked<R>> {
     let mut first = Vec::new();
     input.by_ref().take(MARK.len() as u64).read_to_end(&mut first)?;

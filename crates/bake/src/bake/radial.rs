@@ -5,10 +5,11 @@
 //! roots of such integrals.
 
 use microfacet_model::classic::{Marginal, MarginalView};
+use microfacet_tables::Interpolation::{Hermite, Linear};
 use microfacet_tables::axis::half_tangent::{rate, slope_at};
 use microfacet_tables::axis::hermite::limit_slopes;
 use microfacet_tables::axis::{HalfTangent, Rational};
-use microfacet_tables::{Axis, Interpolation, Kind, LobeSpec, Mapping, Precision, Subject, Table};
+use microfacet_tables::{Axis, Kind, LobeSpec, Mapping, Precision, Subject, Table};
 use rayon::prelude::*;
 
 use super::shadowing::ratios;
@@ -32,29 +33,15 @@ pub fn radial_axes(level: Level, kappa: f64, reach: f64) -> [(Kind, Vec<Axis>); 
         reach if reach.is_finite() => rational(reach),
         _ => HALF_TANGENT,
     };
+    let views = |mapping, interpolation, count| Axis::placed("view", mapping, interpolation, count);
+    let slope =
+        |mapping, interpolation, count| Axis::placed("slope", mapping, interpolation, count);
+    let given = slope(slopes, Linear, SLOPES);
     [
-        (
-            Kind::RadialShadowing,
-            vec![Axis::placed("view", rational(kappa), Interpolation::Hermite, r.shadowing_views)],
-        ),
-        (
-            Kind::RadialSlope,
-            vec![
-                Axis::placed("view", HALF_TANGENT, Interpolation::Linear, r.views),
-                along(along_numbers),
-            ],
-        ),
-        (
-            Kind::RadialConditional,
-            vec![
-                Axis::placed("slope", slopes, Interpolation::Linear, SLOPES),
-                across(across_numbers),
-            ],
-        ),
-        (
-            Kind::RadialDensity,
-            vec![Axis::placed("slope", HALF_TANGENT, Interpolation::Hermite, DENSITIES)],
-        ),
+        (Kind::RadialShadowing, vec![views(rational(kappa), Hermite, r.shadowing_views)]),
+        (Kind::RadialSlope, vec![views(HALF_TANGENT, Linear, r.views), along(along_numbers)]),
+        (Kind::RadialConditional, vec![given, across(across_numbers)]),
+        (Kind::RadialDensity, vec![slope(HALF_TANGENT, Hermite, DENSITIES)]),
     ]
 }
 
@@ -160,29 +147,31 @@ fn slope_from(g: f64, sign: f64) -> f64 {
     sign * (x / z.max(1e-300)).clamp(-1e30, 1e30)
 }
 
-/// Slopes at the ends of a support are infinite; `limit_slopes` bounds them afterwards.
-fn finite(slope: f64) -> f64 {
-    if slope.is_finite() { slope } else { f64::from(f32::MAX) }
+/// A half of a row: the distance from an end at each random number, and its derivative per node;
+/// `share` is the share of normals within a distance, and the derivative of that.
+fn half_row(numbers: &[f64], share: impl Fn(f64) -> (f64, f64)) -> Vec<[f32; 2]> {
+    let cells = (numbers.len() - 1) as f64;
+    let mut g = 1e-3;
+    round(numbers.iter().map(|&t| {
+        let (u, du_dt) = mirrored(t);
+        g = solve(u, g, &share);
+        let slope = du_dt / share(g).1 / cells;
+        // At the end of a support it is infinite; `limit_slopes` bounds it.
+        [g, if slope.is_finite() { slope } else { f64::from(f32::MAX) }]
+    }))
 }
 
 fn in_plane(marginal: &Marginal, views: &[f64], numbers: &[f64], stage: &Stage) -> Vec<[f32; 2]> {
-    let cells = (numbers.len() - 1) as f64;
     let row = |&tau: &f64| {
         let z = SLOPE.quantity(tau);
         let view = MarginalView::new(marginal, z);
         let mut row = Vec::with_capacity(2 * numbers.len());
         for sign in [-1.0, 1.0] {
-            let mut g = 1e-3;
-            let mut half = round(numbers.iter().map(|&t| {
-                let (u, du_dt) = mirrored(t);
-                let share = |g: f64| {
-                    let x = slope_from(g, sign);
-                    let at = view.shares(x);
-                    (if sign < 0.0 { at.below } else { at.above }, at.density / rate(x, 1.0))
-                };
-                g = solve(u, g, share);
-                [g, finite(du_dt / share(g).1 / cells)]
-            }));
+            let mut half = half_row(numbers, |g| {
+                let x = slope_from(g, sign);
+                let at = view.shares(x);
+                (if sign < 0.0 { at.below } else { at.above }, at.density / rate(x, 1.0))
+            });
             if sign < 0.0 && tau < 1.0 && z <= marginal.reach() {
                 // The silhouette in closed form, as in the family's tables.
                 half[0][0] = SLOPE.parts(tau)[1] as f32;
@@ -202,7 +191,6 @@ fn given_slope(
     numbers: &[f64],
     stage: &Stage,
 ) -> Vec<[f32; 2]> {
-    let cells = (numbers.len() - 1) as f64;
     let row = |&at: &f64| {
         // A row at infinity, or at or beyond the bound R of the slopes, has no quadrature; a row
         // just before it is close to the limit.
@@ -216,20 +204,14 @@ fn given_slope(
                 (x, (1.0 + x * x).sqrt())
             }
         };
-        let beside = marginal.across_at(x);
-        let mut g = 1e-3;
-        let mut half = round(numbers.iter().map(|&t| {
-            let (u, du_dt) = mirrored(t);
-            let share = |g: f64| {
-                let t = slope_from(g, 1.0);
-                let tail = beside.tail(t.abs() * scale);
-                // Symmetric about t = 0, where the half table ends.
-                let above = if t < 0.0 { 1.0 - tail } else { tail };
-                (above, scale * beside.density(t.abs() * scale) / rate(t, 1.0))
-            };
-            g = solve(u, g, share);
-            [g, finite(du_dt / share(g).1 / cells)]
-        }));
+        let across = marginal.across_at(x);
+        let mut half = half_row(numbers, |g| {
+            let t = slope_from(g, 1.0);
+            let tail = across.tail(t.abs() * scale);
+            // Symmetric about t = 0, where the half table ends.
+            let above = if t < 0.0 { 1.0 - tail } else { tail };
+            (above, scale * across.density(t.abs() * scale) / rate(t, 1.0))
+        });
         limit_slopes(&mut half);
         stage.step();
         half

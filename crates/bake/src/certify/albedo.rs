@@ -53,9 +53,6 @@ pub fn interior_references(
 
 /// The model's values at corners, in the middle of every cell along every edge, of smooth surfaces,
 /// in the middles of cells over azimuths, and on the crease of a tilted lobe.
-///
-/// # Errors
-/// As [`interior_references`].
 pub fn edge_references(spec: &AlbedoSpec, stage: &Stage) -> Result<Vec<Reference>, AlbedoError> {
     let points = [edges(spec), smooth(spec), middles(spec), crease(spec)].concat();
     stage.split(points.len());
@@ -134,7 +131,7 @@ pub fn certified(
 }
 
 /// The errors of all quantities at one place.
-type At<'a> = (&'a Reference, Vec<f64>);
+type At = (Reference, Vec<f64>);
 
 fn directional_certificate(
     spec: &AlbedoSpec,
@@ -145,10 +142,9 @@ fn directional_certificate(
     let masking = table.subject.masking.unwrap_or_default();
     let reader = Reader::new(spec, table, references.first())?;
     let measured = |at: &Reference| reader.errors(at);
-    let errors = measured_at(references, measured)?;
+    let errors = measured_at(references.to_vec(), measured)?;
     let mut found = climbed(spec, &errors, true, measured, stage)?;
     found.extend(climbed(spec, &errors, false, measured, stage)?);
-    let found: Vec<At<'_>> = found.iter().map(|(at, errors)| (at, errors.clone())).collect();
     let form = Masking::ALL.iter().position(|form| *form == masking).unwrap_or(0);
     let shortcuts = references.iter().filter(|at| at.point.promised).filter_map(|at| at.shortcut);
     let stand_in = shortcuts.map(|forms| forms[form]).reduce(f64::max).map(round_up);
@@ -202,7 +198,7 @@ pub fn errors_at(
 ) -> Result<Vec<f64>, AlbedoError> {
     let references = references(spec, points, false, stage)?;
     let reader = Reader::new(spec, table, references.first())?;
-    let errors = measured_at(&references, |at| reader.errors(at))?;
+    let errors = measured_at(references, |at| reader.errors(at))?;
     Ok(errors.iter().map(|(_, errors)| largest(errors)).collect())
 }
 
@@ -270,15 +266,15 @@ fn highest(tops: &[Top], count: usize) -> Vec<Top> {
 /// places, and is found from the nearest.
 fn climbed(
     spec: &AlbedoSpec,
-    errors: &[At<'_>],
+    errors: &[At],
     promised: bool,
     measured: impl Fn(&Reference) -> Result<Vec<f64>, MaterialError> + Copy + Send + Sync,
     stage: &Stage,
-) -> Result<Vec<(Reference, Vec<f64>)>, AlbedoError> {
+) -> Result<Vec<At>, AlbedoError> {
     let hills = if promised { hills(spec) } else { HILLS_OUTSIDE };
     let mut tops: Vec<Top> = Vec::new();
     for i in 0..quantities(spec).len() {
-        let mut worst: Vec<&At<'_>> =
+        let mut worst: Vec<&At> =
             errors.iter().filter(|errors| errors.0.point.promised == promised).collect();
         worst.sort_by(|a, b| b.1[i].total_cmp(&a.1[i]));
         let start = tops.len();
@@ -289,13 +285,13 @@ fn climbed(
             }
         }
     }
-    let mut seen: Vec<(Reference, Vec<f64>)> = Vec::new();
+    let mut seen: Vec<At> = Vec::new();
     for (step, count) in STEPS.into_iter().zip(hills) {
         tops = highest(&tops, count);
         let around: Vec<Vec<Point>> =
             tops.iter().map(|(_, point, _)| beside(spec, point, step)).collect();
         let references = references(spec, around.concat(), true, stage)?;
-        let errors = measured_at(&references, measured)?;
+        let errors = measured_at(references, measured)?;
         let mut from = 0;
         let mut last = None;
         for ((i, point, error), own) in tops.iter_mut().zip(&around) {
@@ -311,18 +307,17 @@ fn climbed(
                 (*point, *error) = (top.0.point.clone(), top.1[*i]);
             }
         }
-        let errors: Vec<Vec<f64>> = errors.into_iter().map(|(_, errors)| errors).collect();
-        seen.extend(references.into_iter().zip(errors));
+        seen.extend(errors);
     }
     Ok(seen)
 }
 
 fn measured_at(
-    references: &[Reference],
+    references: Vec<Reference>,
     measured: impl Fn(&Reference) -> Result<Vec<f64>, MaterialError> + Send + Sync,
-) -> Result<Vec<At<'_>>, MaterialError> {
-    let errors = references.par_iter().map(measured).collect::<Result<Vec<_>, MaterialError>>()?;
-    Ok(references.iter().zip(errors).collect())
+) -> Result<Vec<At>, MaterialError> {
+    let one = |at: Reference| measured(&at).map(|errors| (at, errors));
+    references.into_par_iter().map(one).collect()
 }
 
 /// The quantities that are read, in the order of their errors.
@@ -338,10 +333,10 @@ fn quantities(spec: &AlbedoSpec) -> Vec<Quantity> {
 
 /// Largest and root-mean-square errors of each quantity, and the place of the largest of all; the
 /// means leave out the places on a crease, and those `found` uphill.
-fn summary(spec: &AlbedoSpec, errors: &[At<'_>], found: &[At<'_>]) -> Certificate {
+fn summary(spec: &AlbedoSpec, errors: &[At], found: &[At]) -> Certificate {
     // Of one material the values are hardly more bytes than all figures would be.
     let is_range = spec.nodes_of_materials() > 1;
-    let is_promised = |errors: &&At<'_>| errors.0.point.promised;
+    let is_promised = |errors: &&At| errors.0.point.promised;
     let (mut inside, mut outside): (Vec<_>, Vec<_>) = errors.iter().partition(is_promised);
     let rms = |i: usize| {
         let spread = errors.iter().filter(|at| is_promised(at) && !at.0.point.on_crease);
@@ -351,7 +346,7 @@ fn summary(spec: &AlbedoSpec, errors: &[At<'_>], found: &[At<'_>]) -> Certificat
     inside.extend(found.iter().filter(is_promised));
     outside.extend(found.iter().filter(|errors| !is_promised(errors)));
     // A NaN counts as the worst error.
-    let largest = |part: &[&At<'_>], i: usize| {
+    let largest = |part: &[&At], i: usize| {
         part.iter().map(|errors| errors.1[i]).max_by(f64::total_cmp).map(round_up)
     };
     let of_quantity = |(i, quantity)| {
@@ -363,7 +358,7 @@ fn summary(spec: &AlbedoSpec, errors: &[At<'_>], found: &[At<'_>]) -> Certificat
         Some((quantity, if is_range { all } else { Errors { rms: None, outside: None, ..all } }))
     };
     let by_quantity = quantities(spec).into_iter().enumerate().filter_map(of_quantity).collect();
-    let worst = |errors: &At<'_>| errors.1.iter().copied().max_by(f64::total_cmp);
+    let worst = |errors: &At| errors.1.iter().copied().max_by(f64::total_cmp);
     let place =
         inside.iter().max_by(|a, b| worst(a).unwrap_or(0.0).total_cmp(&worst(b).unwrap_or(0.0)));
     let at = place.map(|(Reference { site: Site { gamma, sigma, eta, phi, cos }, .. }, _)| {
@@ -397,7 +392,8 @@ fn averages(
 ) -> Result<Certificate, MaterialError> {
     let set = Tables::from_tables(Default::default(), vec![table.clone()])
         .map_err(|why| MaterialError::NoTable(why.to_string()))?;
-    let errors = measured_at(references, |at| average_errors(&set, directional, &at.site))?;
+    let measured = |at: &Reference| average_errors(&set, directional, &at.site);
+    let errors = measured_at(references.to_vec(), measured)?;
     let mut certificate = summary(spec, &errors, &[]);
     certificate.at.remove(&Coordinate::Cosine);
     Ok(certificate)

@@ -239,9 +239,6 @@ fn climb(start: Seen, cells: Place, error: &impl Fn(Place) -> f64) -> (Seen, usi
 /// `s` limits the shapes to those that were asked for: a sub-range has nodes beyond its ends, for
 /// interpolation only, and between those it is less accurate. The table's description states the
 /// range it covers.
-///
-/// # Errors
-/// [`MaterialError`] if the tables are not a complete set.
 pub(crate) fn measure(
     tables: &Tables,
     table: &Table,

@@ -76,36 +76,29 @@ pub fn measure(radial: &Lobe, marginal: &Marginal) -> Errors {
 /// The largest error of one table with these axes.
 fn found(radial: &Lobe, marginal: &Marginal, kind: Kind, axes: &[Axis]) -> Found {
     let ruler = Ruler::new(radial, marginal, axes);
-    let cells = |axis: &Axis| (axis.nodes.len() - 1) as f64;
-    let first = Along::whole(axes[0].nodes.len()).up_to(read(kind, &axes[0]));
-    match kind {
-        Kind::RadialSlope | Kind::RadialConditional => {
-            let half = cells(&axes[1]);
-            let numbers = Along::mirrored(axes[1].nodes.len());
-            let error = |[way, a, b]: [f64; 3]| match kind {
-                Kind::RadialSlope => ruler.along(a, number(b, half)),
-                _ => {
-                    let first = ruler.first_number(way as usize, a, a / first.cells);
-                    ruler.across(way as usize, first, number(b, half))
-                }
-            };
-            let sweep = places([&first, &numbers], POINTS - POINTS / 4);
-            let ways = if kind == Kind::RadialConditional { WAYS } else { 1 };
-            searched(sweep, [first.cells, 2.0 * half], ways, error)
-        }
-        _ => {
-            let error = |[_, a, _]: [f64; 3]| match kind {
-                Kind::RadialShadowing => ruler.g1(a),
-                _ => ruler.density(a),
-            };
-            // D has a kink where the slopes end.
-            let end = HalfTangent::default().coordinate(marginal.reach());
-            let names = [end * (1.0 - 1e-5), end * (1.0 - 1e-6), end];
-            let first = if kind == Kind::RadialDensity { first.and(names) } else { first };
-            let points = PER_CELL * (axes[0].nodes.len() - 1);
-            searched(places([&first, &Along::none()], points), [first.cells, 0.0], 1, error)
-        }
+    let mut first = Along::whole(axes[0].nodes.len()).up_to(read(kind, &axes[0]));
+    if kind == Kind::RadialDensity {
+        // D has a kink where the slopes end.
+        let end = HalfTangent::default().coordinate(marginal.reach());
+        first = first.and([end * (1.0 - 1e-5), end * (1.0 - 1e-6), end]);
     }
+    let (numbers, points) = match axes.get(1) {
+        Some(axis) => (Along::mirrored(axis.nodes.len()), POINTS - POINTS / 4),
+        None => (Along::none(), PER_CELL * (axes[0].nodes.len() - 1)),
+    };
+    let u = |b: f64| number(b, 0.5 * numbers.cells);
+    let error = |[way, a, b]: [f64; 3]| match kind {
+        Kind::RadialShadowing => ruler.g1(a),
+        Kind::RadialDensity => ruler.density(a),
+        Kind::RadialSlope => ruler.along(a, u(b)),
+        _ => {
+            let first = ruler.first_number(way as usize, a, a / first.cells);
+            ruler.across(way as usize, first, u(b))
+        }
+    };
+    let ways = if kind == Kind::RadialConditional { WAYS } else { 1 };
+    let cells = [first.cells, numbers.cells];
+    searched(places([&first, &numbers], points), cells, ways, error)
 }
 
 /// The share of the first axis that is read.

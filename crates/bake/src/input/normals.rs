@@ -1,6 +1,5 @@
 //! Reads a measured distribution of normals from a CSV of angles and D.
 
-use std::fmt;
 use std::io::Read;
 
 use microfacet_model::classic::{Tabulated, TabulatedError};
@@ -13,40 +12,23 @@ use super::{Limited, MAX_TEXT};
 pub const MAX_ROWS: usize = 1_000_000;
 
 /// Why a measurement could not be read.
-#[derive(Clone, PartialEq)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 pub enum MeasuredError {
     /// A row that cannot be read, or is out of range.
-    Row(RowError),
+    #[error(transparent)]
+    Row(#[from] RowError),
     /// An angle out of range that may have been meant in degrees.
+    #[error("{0}; if it is in degrees, say so")]
     Degrees(RowError),
     /// There are more rows than [`MAX_ROWS`].
+    #[error("more than {MAX_ROWS} rows: leave some out, or average neighbours")]
     TooMany,
     /// All the rows together are no distribution.
+    #[error(transparent)]
     Distribution(TabulatedError),
 }
 
-impl fmt::Display for MeasuredError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Row(error) => write!(f, "{error}"),
-            Self::Degrees(error) => write!(f, "{error}; if it is in degrees, say so"),
-            Self::TooMany => {
-                write!(f, "more than {MAX_ROWS} rows: leave some out, or average neighbours")
-            }
-            Self::Distribution(error) => write!(f, "{error}"),
-        }
-    }
-}
-
 microfacet_core::debug_in_words!(MeasuredError);
-
-impl std::error::Error for MeasuredError {}
-
-impl From<RowError> for MeasuredError {
-    fn from(error: RowError) -> Self {
-        Self::Row(error)
-    }
-}
 
 /// A row of a measurement.
 struct Measured {

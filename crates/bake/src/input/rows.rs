@@ -1,7 +1,5 @@
 //! The rows of a CSV, each with the line on which it begins.
 
-use std::collections::VecDeque;
-use std::fmt;
 use std::io::{self, Read};
 
 use super::{Limited, MAX_ROW, Unmarked, unmarked_stream};
@@ -16,7 +14,8 @@ pub struct Row {
 }
 
 /// Why a row was refused.
-#[derive(Clone, PartialEq, Eq)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
+#[error("line {line}: {why}")]
 pub struct RowError {
     /// The line on which it begins, from 1.
     pub line: u64,
@@ -30,15 +29,7 @@ impl RowError {
     }
 }
 
-impl fmt::Display for RowError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "line {}: {}", self.line, self.why)
-    }
-}
-
 microfacet_core::debug_in_words!(RowError);
-
-impl std::error::Error for RowError {}
 
 /// Reads a CSV row by row, each of at most [`MAX_ROW`] bytes.
 ///
@@ -46,7 +37,7 @@ impl std::error::Error for RowError {}
 /// other.
 #[derive(Debug)]
 pub struct Rows<R> {
-    reader: csv::Reader<Numbered<Limited<Unmarked<R>>>>,
+    reader: csv::Reader<LineFeeds<Limited<Unmarked<R>>>>,
 }
 
 impl<R: Read> Rows<R> {
@@ -59,9 +50,13 @@ impl<R: Read> Rows<R> {
         let reader = csv::ReaderBuilder::new()
             .has_headers(false)
             .flexible(true)
-            .trim(csv::Trim::All)
             .comment(comment)
-            .from_reader(Numbered::new(Limited::new(input, MAX_ROW), comment));
+            .from_reader(LineFeeds {
+                input: Limited::new(input, MAX_ROW),
+                last: b'\n',
+                bytes: 0,
+                ends: 2,
+            });
         Ok(Self { reader })
     }
 
@@ -78,21 +73,22 @@ impl<R: Read> Rows<R> {
     pub fn read(&mut self) -> Result<Option<Row>, RowError> {
         loop {
             self.reader.get_mut().input.restart();
-            let start = self.bytes();
-            let mut fields = csv::StringRecord::new();
-            let found = self.reader.read_record(&mut fields);
-            let line = self.reader.get_mut().line_from(start);
-            let found = found.map_err(|error| match error.into_kind() {
-                csv::ErrorKind::Io(why) => RowError::new(line, why.to_string()),
-                _ => RowError::new(line, "is no text in UTF-8"),
-            })?;
-            if !found {
+            let (start, mut fields) = (self.reader.position().line(), csv::ByteRecord::new());
+            let found = self.reader.read_byte_record(&mut fields);
+            if !found.map_err(|why| RowError::new(start, why.to_string()))? {
                 return Ok(None);
             }
             // A row ends with the first line break at the latest, if it is not in quotes.
-            if self.bytes() == self.reader.get_ref().bytes + ENDS {
+            let text = self.reader.get_ref();
+            let is_open = text.ends == 0 && self.bytes() == text.bytes;
+            let inside = fields.as_slice().iter().filter(|&&byte| byte == b'\n').count();
+            let line = self.reader.position().line() - inside as u64 - u64::from(!is_open);
+            if is_open {
                 return Err(RowError::new(line, "a quote is opened here and never closed"));
             }
+            let mut fields = csv::StringRecord::from_byte_record(fields)
+                .map_err(|_| RowError::new(line, "is no text in UTF-8"))?;
+            fields.trim();
             // A line of spaces is blank.
             if fields.len() > 1 || !fields[0].is_empty() {
                 return Ok(Some(Row { line, fields }));
@@ -101,66 +97,41 @@ impl<R: Read> Rows<R> {
     }
 }
 
-/// Line breaks that are put after the last byte, to see whether a quote takes them in.
-const ENDS: u64 = 2;
-
-/// A stream that notes where the lines of its text begin.
+/// A stream in which every line break is one line feed, as the parser counts them, with two more at
+/// its end, which an open quote takes in.
 #[derive(Debug)]
-struct Numbered<R> {
+struct LineFeeds<R> {
     input: R,
-    comment: Option<u8>,
-    /// Bytes of the text so far, and line breaks.
-    bytes: u64,
-    breaks: u64,
+    /// The last byte of the input.
     last: u8,
-    /// Line breaks still to put after the text.
-    ends: u64,
-    /// Byte and number of the lines from which rows may still be read: neither empty nor comments.
-    lines: VecDeque<(u64, u64)>,
+    /// Bytes so far, and line feeds still to come after the input.
+    bytes: u64,
+    ends: usize,
 }
 
-impl<R> Numbered<R> {
-    fn new(input: R, comment: Option<u8>) -> Self {
-        Self { input, comment, bytes: 0, breaks: 0, last: b'\n', ends: ENDS, lines: [].into() }
-    }
-
-    /// The line of the first row from a byte on, or where there is none the last line so far.
-    fn line_from(&mut self, byte: u64) -> u64 {
-        while self.lines.front().is_some_and(|&(start, _)| start < byte) {
-            self.lines.pop_front();
-        }
-        self.lines.front().map_or(self.breaks + 1, |&(_, line)| line)
-    }
-
-    fn note(&mut self, byte: u8) {
-        let ends = |byte| matches!(byte, b'\r' | b'\n');
-        if ends(byte) {
-            // A carriage return and a line feed are one break.
-            self.breaks += u64::from(!(byte == b'\n' && self.last == b'\r'));
-        } else if ends(self.last) && self.comment != Some(byte) {
-            self.lines.push_back((self.bytes, self.breaks + 1));
-        }
-        self.last = byte;
-        self.bytes += 1;
-    }
-}
-
-impl<R: Read> Read for Numbered<R> {
+impl<R: Read> Read for LineFeeds<R> {
     fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
-        let count = self.input.read(to)?;
-        if count == 0 {
-            let ends = to.iter_mut().take(self.ends as usize).map(|byte| *byte = b'\n').count();
-            self.ends -= ends as u64;
-            return Ok(ends);
-        }
-        for byte in &mut to[..count] {
-            self.note(*byte);
-            // The parser ends a comment with a line feed alone.
-            if self.comment.is_some() && *byte == b'\r' {
-                *byte = b'\n';
+        let mut kept = 0;
+        while kept == 0 {
+            let count = self.input.read(to)?;
+            if count == 0 {
+                kept = self.ends.min(to.len());
+                to[..kept].fill(b'\n');
+                self.ends -= kept;
+                break;
+            }
+            for i in 0..count {
+                let byte = to[i];
+                // A carriage return and a line feed are one break.
+                if !(byte == b'\n' && self.last == b'\r') {
+                    to[kept] = if byte == b'\r' { b'\n' } else { byte };
+                    kept += 1;
+                }
+                self.last = byte;
             }
         }
-        Ok(count)
+        self.bytes += kept as u64;
+        Ok(kept)
     }
 }
 

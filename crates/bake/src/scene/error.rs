@@ -1,9 +1,8 @@
 //! Places in a scene description, and its errors.
 
-use std::fmt;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::{fmt, io};
 
 /// A place in a scene description.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -137,6 +136,8 @@ impl fmt::Display for Place {
 }
 
 /// Why a scene description was refused.
+#[derive(thiserror::Error)]
+#[error("{place}: {kind}")]
 pub struct SceneError {
     /// The place of the error.
     pub place: Place,
@@ -145,66 +146,47 @@ pub struct SceneError {
 }
 
 /// The kinds of [`SceneError`].
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum SceneErrorKind {
     /// The file cannot be read.
+    #[error("cannot be read: {0}")]
     Io(io::Error),
     /// The file name's extension belongs to none of the formats; holds the extension.
+    #[error("{}", unknown_extension(.0))]
     UnknownExtension(PathBuf),
     /// The text does not follow the format's grammar.
+    #[error("{0}")]
     Syntax(String),
     /// The text is well formed and says something impossible: a value out of range, a name that
     /// is not defined, files that include each other.
+    #[error("{0}")]
     Invalid(String),
     /// The text is another kind of document than a scene: of XML with another root, for instance.
+    #[error("{0}")]
     Foreign(String),
     /// The scene passes a limit of what is read.
+    #[error("{0}")]
     TooLarge(String),
-}
-
-impl fmt::Display for SceneError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.place, self.kind)
-    }
 }
 
 microfacet_core::debug_in_words!(SceneError);
 
-impl fmt::Display for SceneErrorKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Io(error) => write!(f, "cannot be read: {error}"),
-            Self::UnknownExtension(extension) => {
-                if extension.as_os_str().is_empty() {
-                    f.write_str("the name has no extension, which says the format")?;
-                } else {
-                    write!(f, "no scene format has the extension \"{}\"", extension.display())?;
-                }
-                f.write_str(
-                    "; the formats are .toml (recipe), .pbrt and .pbrt.gz (pbrt-v4), .xml (Mitsuba \
-                     3), .gltf and .glb (glTF 2.0), .mtlx (MaterialX)",
-                )?;
-                let is_usd = |it: &str| matches!(it, "usd" | "usda" | "usdc" | "usdz");
-                if extension.to_str().is_some_and(is_usd) {
-                    f.write_str("; export a USD scene as glTF, or its materials as MaterialX")?;
-                }
-                Ok(())
-            }
-            Self::Syntax(message)
-            | Self::Invalid(message)
-            | Self::Foreign(message)
-            | Self::TooLarge(message) => f.write_str(message),
+fn unknown_extension(extension: &Path) -> String {
+    let extension = extension.display().to_string();
+    let what = match &extension[..] {
+        "" => "the name has no extension, which says the format".into(),
+        _ => format!("no scene format has the extension \"{extension}\""),
+    };
+    let usd = match &extension[..] {
+        "usd" | "usda" | "usdc" | "usdz" => {
+            "; export a USD scene as glTF, or its materials as MaterialX"
         }
-    }
-}
-
-impl std::error::Error for SceneError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match &self.kind {
-            SceneErrorKind::Io(error) => Some(error),
-            _ => None,
-        }
-    }
+        _ => "",
+    };
+    format!(
+        "{what}; the formats are .toml (recipe), .pbrt and .pbrt.gz (pbrt-v4), .xml (Mitsuba 3), \
+         .gltf and .glb (glTF 2.0), .mtlx (MaterialX){usd}"
+    )
 }
 
 /// Names that other programs and papers give to a parameter, its name here, and how they relate.

@@ -11,15 +11,16 @@ use std::{fs, io};
 use microfacet_sampler::Tables;
 use microfacet_tables::Index;
 
+use super::interrupt::{self, Leftovers};
 use super::replace::{Replacement, check_writable, in_folder, remove_abandoned};
-use super::{Format, NAMES, StoreError, Written, bytes_of, image_of, interrupt, numbered};
+use super::{Format, NAMES, StoreError, Written, bytes_of, image_of, numbered};
 
 /// A folder to write into. One that was made for it is removed again on drop if it is empty.
 #[derive(Debug)]
 pub struct OutputFolder {
     path: PathBuf,
     /// Folders that did not exist before, the innermost first.
-    made: Vec<PathBuf>,
+    made: Leftovers,
     /// Whether something new is in the folder.
     written: Arc<AtomicBool>,
 }
@@ -31,8 +32,8 @@ impl OutputFolder {
     /// [`StoreError::Io`] if the path is no folder or cannot be written to.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
         let missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
-        let made: Vec<_> = path.ancestors().take_while(missing).map(Path::to_path_buf).collect();
-        interrupt::will_make(&made);
+        let made = path.ancestors().take_while(missing).map(Path::to_path_buf);
+        let made = Leftovers::folders(made.collect());
         let this = Self { path: path.into(), made, written: Arc::default() };
         let failed = |why| StoreError::Io(path.into(), why);
         // Fail now rather than after an hour of work.
@@ -132,8 +133,7 @@ impl OutputFolder {
 
 impl Drop for OutputFolder {
     fn drop(&mut self) {
-        interrupt::remove_empty(&self.made);
-        interrupt::forget(&self.made);
+        self.made.remove_empty();
     }
 }
 

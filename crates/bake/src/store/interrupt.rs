@@ -1,64 +1,65 @@
 //! Ends a process between two writes and never within one.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::{Duration, Instant};
+use std::{fs, io};
 
 use tempfile::NamedTempFile;
 
 /// Held while files are replaced.
 static WRITING: Mutex<()> = Mutex::new(());
-/// Folders that were made for sets, the innermost first; a bake that is refused removes them again.
-static MADE: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
-/// Files that are being written under a temporary name.
-static PARTIAL: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+/// Files under temporary names, and folders made for sets.
+static LEFTOVERS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// Marks a write that must not be cut short, as long as the guard lives. Does not nest.
 pub(super) fn writing() -> MutexGuard<'static, ()> {
     WRITING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn locked(list: &Mutex<Vec<PathBuf>>) -> MutexGuard<'_, Vec<PathBuf>> {
-    list.lock().unwrap_or_else(PoisonError::into_inner)
+fn leftovers() -> MutexGuard<'static, Vec<PathBuf>> {
+    LEFTOVERS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A file under a temporary name that is removed if the process is interrupted.
+/// What an interrupt removes as long as this lives: files, and folders if they are empty.
 #[derive(Debug)]
-pub(super) struct Leftover(PathBuf);
+pub(super) struct Leftovers(Vec<PathBuf>);
 
-impl Leftover {
+impl Leftovers {
     /// Makes a file, which is listed before an interrupt can see it.
-    pub(super) fn of<E>(
-        make: impl FnOnce() -> Result<NamedTempFile, E>,
-    ) -> Result<(NamedTempFile, Self), E> {
-        let mut list = locked(&PARTIAL);
+    pub(super) fn file(
+        make: impl FnOnce() -> io::Result<NamedTempFile>,
+    ) -> io::Result<(NamedTempFile, Self)> {
+        let mut all = leftovers();
         let file = make()?;
-        list.push(file.path().into());
-        let leftover = Self(file.path().into());
-        Ok((file, leftover))
+        all.push(file.path().into());
+        let this = Self(vec![file.path().into()]);
+        Ok((file, this))
+    }
+
+    /// Folders that are about to be made, the innermost first.
+    pub(super) fn folders(folders: Vec<PathBuf>) -> Self {
+        leftovers().extend_from_slice(&folders);
+        Self(folders)
+    }
+
+    /// Removes its folders as far as they are empty.
+    pub(super) fn remove_empty(&self) {
+        remove_empty(&self.0);
     }
 }
 
-impl Drop for Leftover {
+fn remove_empty(folders: &[PathBuf]) {
+    for folder in folders {
+        // A folder with any content cannot be removed, and stays.
+        let _ = fs::remove_dir(folder);
+    }
+}
+
+impl Drop for Leftovers {
     fn drop(&mut self) {
-        locked(&PARTIAL).retain(|path| *path != self.0);
+        leftovers().retain(|path| !self.0.contains(path));
     }
-}
-
-/// Remembers folders that are about to be made.
-pub(super) fn will_make(folders: &[PathBuf]) {
-    locked(&MADE).extend_from_slice(folders);
-}
-
-/// Forgets folders that are removed, or hold a set now.
-pub(super) fn forget(folders: &[PathBuf]) {
-    locked(&MADE).retain(|folder| !folders.contains(folder));
-}
-
-/// Removes folders, the innermost first, as far as they are empty.
-pub(super) fn remove_empty(folders: &[impl AsRef<Path>]) {
-    // A folder with any content cannot be removed, and stays.
-    folders.iter().all(|folder| std::fs::remove_dir(folder).is_ok());
 }
 
 /// Prepares the end of the process from a signal handler's thread: waits until no file is being
@@ -66,7 +67,7 @@ pub(super) fn remove_empty(folders: &[impl AsRef<Path>]) {
 /// folders that were made for sets.
 ///
 /// Returns whether the files are whole. `false` says that a write has not ended within `patience`,
-/// as on a disk that hangs; whoever opens the folder next completes it.
+/// as on a disk that hangs.
 pub fn quiesce(patience: Duration) -> bool {
     let start = Instant::now();
     let guard = loop {
@@ -79,13 +80,13 @@ pub fn quiesce(patience: Duration) -> bool {
             Err(TryLockError::Poisoned(why)) => break why.into_inner(),
         }
     };
-    let partial = locked(&PARTIAL);
-    for path in partial.iter() {
-        // One that is gone already is no error.
-        let _ = std::fs::remove_file(path);
+    let leftovers = leftovers();
+    for path in leftovers.iter() {
+        // One that is gone already is no error, and folders stay.
+        let _ = fs::remove_file(path);
     }
-    remove_empty(&locked(&MADE));
+    remove_empty(&leftovers);
     // Never unlocked again.
-    std::mem::forget((guard, partial));
+    std::mem::forget((guard, leftovers));
     true
 }

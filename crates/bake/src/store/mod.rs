@@ -1,7 +1,7 @@
 //! Tables on disk, as safetensors and OpenEXR. Only this folder of the crate reads and writes table
 //! files.
 //!
-//! A set is one file, which takes its place in one step: whoever reads, without a lock, sees the
+//! A set is one file, which takes its place in one step: a reader, which needs no lock, sees the
 //! old set or the new one.
 
 #[cfg(feature = "exr")]
@@ -14,8 +14,8 @@ mod interrupt;
 mod numbered;
 mod replace;
 
+use std::io;
 use std::path::{Path, PathBuf};
-use std::{fmt, io};
 
 use microfacet_sampler::Tables;
 use microfacet_tables::{Index, LoadError, Table, encode};
@@ -55,34 +55,26 @@ impl Format {
 const NAMES: [&str; 3] = [Format::Safetensors.file(), Format::Exr.file(), Index::FILE];
 
 /// Why a set could not be read or written.
+#[derive(thiserror::Error)]
 pub enum StoreError {
     /// The operating system reported an error.
-    Io(PathBuf, std::io::Error),
+    #[error("{}: {}", .0.display(), .1)]
+    Io(PathBuf, io::Error),
     /// The file is not a table set, damaged, or of a newer version.
+    #[error("{}: {}", .0.display(), .1)]
     Load(PathBuf, LoadError),
     /// An image could not be written.
+    #[error("{}: {}", .0.display(), .1)]
     Exr(PathBuf, String),
     /// A set would be larger than what is read.
+    #[error("{}: {}", .0.display(), .1)]
     TooLarge(PathBuf, String),
     /// A set, or numbered sets, have no material of a name.
+    #[error("{}: {}", .0.display(), .1)]
     NoMaterial(PathBuf, String),
 }
 
-impl fmt::Display for StoreError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Io(path, why) => write!(f, "{}: {why}", path.display()),
-            Self::Load(path, why) => write!(f, "{}: {why}", path.display()),
-            Self::Exr(path, why) | Self::NoMaterial(path, why) | Self::TooLarge(path, why) => {
-                write!(f, "{}: {why}", path.display())
-            }
-        }
-    }
-}
-
 microfacet_core::debug_in_words!(StoreError);
-
-impl std::error::Error for StoreError {}
 
 /// A file that was written.
 #[derive(Clone, Debug)]
@@ -94,9 +86,6 @@ pub struct Written {
 }
 
 /// Writes a set into a folder: [`OutputFolder::open_for_set`], then [`OutputFolder::write`].
-///
-/// # Errors
-/// As [`OutputFolder::open_for_set`] and [`OutputFolder::write`].
 pub fn write(folder: &Path, set: &Tables, format: Format) -> Result<Vec<Written>, StoreError> {
     OutputFolder::open_for_set(folder)?.write(set, format)
 }

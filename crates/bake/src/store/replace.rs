@@ -3,15 +3,15 @@
 //! A path is written to as a shell's `>` would: links are followed, modes kept, devices written
 //! through. What cannot be replaced as a whole is refused.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeSet, HashMap};
 use std::fs::{self, Metadata, OpenOptions};
-use std::io::{self, Write};
+use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use tempfile::NamedTempFile;
 
-use super::interrupt::{self, Leftover};
+use super::interrupt::{self, Leftovers};
 use super::{StoreError, Written};
 use crate::input;
 
@@ -23,9 +23,6 @@ const SUFFIX: &str = ".partial";
 /// in memory when it is begun, and of numbered sets until all are baked.
 const ABANDONED: Duration = Duration::from_secs(24 * 60 * 60);
 
-/// Most links that are followed one after the other, as by Linux.
-const LINKS: usize = 40;
-
 /// Most times that a folder is made, since others may remove it.
 const TIMES: usize = 100;
 
@@ -33,7 +30,7 @@ const TIMES: usize = 100;
 /// there: into a temporary file in the same folder, synchronised to disk, then renamed over it.
 ///
 /// Symbolic links are followed, dangling ones too, and the file they name is replaced. An existing
-/// file keeps its mode and, where the system lets us, its owner; its other hard links keep the old
+/// file keeps its mode and, where the system allows it, its owner; its other hard links keep the old
 /// content. Character devices are written through.
 ///
 /// # Errors
@@ -45,9 +42,6 @@ pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
 }
 
 /// As [`replace`], with bytes that `write` writes, which need not fit into memory.
-///
-/// # Errors
-/// As [`replace`], and those of `write`.
 pub fn replace_with(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -59,36 +53,25 @@ pub fn replace_with(
 }
 
 /// Checks that a file could be written as by [`replace`], and writes nothing.
-///
-/// # Errors
-/// As [`replace`].
 pub fn check_file(path: &Path) -> io::Result<()> {
-    let to = destination(path)?;
+    let to = Destination::of(path)?;
     if to.is_device() {
         return OpenOptions::new().write(true).open(&to.path).map(|_| ());
     }
-    stage(folder_of(&to.path), |_| Ok(()), to.old.as_ref()).map(|_| ())
+    to.stage(|_| Ok(())).map(|_| ())
+}
+
+/// Checks that [`replace`] may write to a path, or remove what is there.
+pub(super) fn check_writable(path: &Path) -> io::Result<()> {
+    Destination::of(path).map(|_| ())
 }
 
 /// The folder that a path is in.
-pub(super) fn folder_of(path: &Path) -> &Path {
+fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Where a path leads.
-struct Destination {
-    path: PathBuf,
-    /// The regular file or device there.
-    old: Option<Metadata>,
-}
-
-impl Destination {
-    fn is_device(&self) -> bool {
-        self.old.as_ref().is_some_and(|old| !old.is_file())
-    }
-}
-
-fn refused<T>(kind: io::ErrorKind, why: impl Into<String>) -> io::Result<T> {
+fn refused<T>(kind: ErrorKind, why: impl Into<String>) -> io::Result<T> {
     Err(io::Error::new(kind, why.into()))
 }
 
@@ -102,75 +85,110 @@ fn is_char_device(_: fs::FileType) -> bool {
     false
 }
 
-/// Follows symbolic links to what a path names, or would name if it existed, and checks that it can
-/// be written to.
-fn destination(path: &Path) -> io::Result<Destination> {
-    // Descriptors such as /dev/stdout look like links, but lead where no path does.
-    if let Ok(old) = fs::metadata(path)
-        && !old.is_file()
-    {
-        return if is_char_device(old.file_type()) {
-            Ok(Destination { path: path.into(), old: Some(old) })
-        } else {
-            let what = input::name(old.file_type());
-            refused(io::ErrorKind::InvalidInput, format!("is {what}; name a regular file"))
-        };
-    }
-    let mut path = path.to_path_buf();
-    for _ in 0..=LINKS {
-        let old = match fs::symlink_metadata(&path) {
-            Err(why) if why.kind() == io::ErrorKind::NotFound => {
-                let folder = folder_of(&path);
-                if folder.is_dir() {
-                    return Ok(Destination { path, old: None });
-                }
-                let why = format!("the folder {} does not exist; make it first", folder.display());
-                return refused(io::ErrorKind::NotFound, why);
-            }
-            old => old?,
-        };
-        if !old.is_symlink() {
-            if old.permissions().readonly() {
-                let why = "is write-protected; make it writable, or name another file";
-                return refused(io::ErrorKind::PermissionDenied, why);
-            }
-            // To replace a file takes the right to write to its folder only. Ask for this one too.
-            match OpenOptions::new().write(true).open(&path) {
-                // Another writer just removed it.
-                Err(why) if why.kind() == io::ErrorKind::NotFound => continue,
-                opened => opened?,
-            };
-            return Ok(Destination { path, old: Some(old) });
-        }
-        let folder = folder_of(&path);
-        if fs::canonicalize(folder).is_ok_and(|folder| folder.starts_with("/proc")) {
-            let why = "is a file that a process has open; name the file itself";
-            return refused(io::ErrorKind::InvalidInput, why);
-        }
-        path = folder.join(fs::read_link(&path)?);
-    }
-    refused(io::ErrorKind::InvalidInput, "is a circle of symbolic links; name a regular file")
+/// Where a path leads, or would lead if the file existed.
+struct Destination {
+    path: PathBuf,
+    /// The regular file or device there.
+    old: Option<Metadata>,
 }
 
-/// Checks that [`replace`] may write to a path, or remove what is there.
-pub(super) fn check_writable(path: &Path) -> io::Result<()> {
-    destination(path).map(|_| ())
+impl Destination {
+    /// Follows symbolic links, and checks that what is there can be written to.
+    fn of(path: &Path) -> io::Result<Self> {
+        let mut old = match fs::metadata(path) {
+            Err(why) if why.kind() == ErrorKind::NotFound => None,
+            found => Some(found?),
+        };
+        if let Some(old) = old.take_if(|old| !old.is_file()) {
+            // Descriptors such as /dev/stdout look like links, but lead where no path does.
+            if is_char_device(old.file_type()) {
+                return Ok(Self { path: path.into(), old: Some(old) });
+            }
+            let why = format!("is {}; name a regular file", input::name(old.file_type()));
+            return refused(ErrorKind::InvalidInput, why);
+        }
+        let mut path = path.to_path_buf();
+        // A circle of links has no metadata.
+        while let Ok(to) = fs::read_link(&path) {
+            let folder = folder_of(&path);
+            if fs::canonicalize(folder).is_ok_and(|folder| folder.starts_with("/proc")) {
+                let why = "is a file that a process has open; name the file itself";
+                return refused(ErrorKind::InvalidInput, why);
+            }
+            path = folder.join(to);
+        }
+        if old.as_ref().is_some_and(|old| old.permissions().readonly()) {
+            let why = "is write-protected; make it writable, or name another file";
+            return refused(ErrorKind::PermissionDenied, why);
+        }
+        let folder = folder_of(&path);
+        if !folder.is_dir() {
+            let why = format!("the folder {} does not exist; make it first", folder.display());
+            return refused(ErrorKind::NotFound, why);
+        }
+        // To replace a file takes the right to write to its folder only. Ask for this one too.
+        match OpenOptions::new().write(true).open(&path) {
+            // There was none, or another writer just removed it.
+            Err(why) if why.kind() == ErrorKind::NotFound => old = None,
+            opened => drop(opened?),
+        }
+        Ok(Self { path, old })
+    }
+
+    fn is_device(&self) -> bool {
+        self.old.as_ref().is_some_and(|old| !old.is_file())
+    }
+
+    /// A complete temporary file beside it, synchronised to disk, with the rights of the old file,
+    /// or those that any new file gets.
+    fn stage(&self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<Staged> {
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(PREFIX).suffix(SUFFIX);
+        #[cfg(unix)]
+        if self.old.is_none() {
+            // The umask applies. Without this, temporary files are their owner's alone.
+            builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        }
+        let folder = folder_of(&self.path);
+        // Without the temporary name, of which a user knows nothing.
+        let (file, _leftovers) =
+            Leftovers::file(|| builder.tempfile_in(folder)).map_err(|why| {
+                let (folder, kind) = (folder.display(), why.kind());
+                io::Error::new(kind, format!("cannot write into the folder {folder}: {kind}"))
+            })?;
+        let mut staged = Staged { file, _leftovers };
+        write(staged.file.as_file_mut())?;
+        #[cfg(unix)]
+        if let Some(old) = &self.old {
+            use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
+            let file = staged.file.as_file();
+            let new = file.metadata()?;
+            if (new.uid(), new.gid()) != (old.uid(), old.gid()) {
+                // Few may give a file to another owner, or to any group.
+                let _ = fchown(file, None, Some(old.gid()));
+                let _ = fchown(file, Some(old.uid()), None);
+            }
+            file.set_permissions(fs::Permissions::from_mode(old.mode() & 0o777))?;
+        }
+        staged.file.as_file().sync_all()?;
+        Ok(staged)
+    }
 }
 
 /// A temporary file that an interrupt removes.
 #[derive(Debug)]
 struct Staged {
     file: NamedTempFile,
-    _leftover: Leftover,
+    _leftovers: Leftovers,
 }
 
 /// New files, complete under temporary names, that take their places one right after the other.
 #[derive(Debug, Default)]
 pub(super) struct Replacement {
-    /// Where they go; devices have their bytes already.
+    /// Where they go, and where that leads; devices have their bytes already.
     all: Vec<(PathBuf, Option<(Staged, PathBuf)>)>,
-    /// Where they lead, to the paths that were named.
-    places: BTreeMap<PathBuf, PathBuf>,
+    /// Where they lead with links resolved, to the paths that were named.
+    places: HashMap<PathBuf, PathBuf>,
 }
 
 impl Replacement {
@@ -189,22 +207,21 @@ impl Replacement {
         path: &Path,
         write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> io::Result<()> {
-        let to = destination(path)?;
+        let to = Destination::of(path)?;
+        if to.is_device() {
+            write(&mut OpenOptions::new().write(true).open(&to.path)?)?;
+            self.all.push((path.into(), None));
+            return Ok(());
+        }
+        let staged = to.stage(write)?;
         if let (Ok(at), Some(file)) = (fs::canonicalize(folder_of(&to.path)), to.path.file_name())
             && let Some(other) = self.places.insert(at.join(file), path.into())
-            && !to.is_device()
         {
             let why =
                 format!("leads to the same file as {}; remove one of the links", other.display());
-            return refused(io::ErrorKind::InvalidInput, why);
+            return refused(ErrorKind::InvalidInput, why);
         }
-        let staged = if to.is_device() {
-            write(&mut OpenOptions::new().write(true).open(&to.path)?)?;
-            None
-        } else {
-            Some((stage(folder_of(&to.path), write, to.old.as_ref())?, to.path))
-        };
-        self.all.push((path.into(), staged));
+        self.all.push((path.into(), Some((staged, to.path))));
         Ok(())
     }
 
@@ -227,72 +244,28 @@ impl Replacement {
     }
 }
 
-/// A complete temporary file in `folder`, synchronised to disk, with the rights of an old file, or
-/// those that any new file gets.
-fn stage(
-    folder: &Path,
-    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-    old: Option<&Metadata>,
-) -> io::Result<Staged> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(PREFIX).suffix(SUFFIX);
-    #[cfg(unix)]
-    if old.is_none() {
-        // The umask applies. Without this, temporary files are their owner's alone.
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    }
-    // Without the temporary name, of which a user knows nothing.
-    let (file, _leftover) = Leftover::of(|| builder.tempfile_in(folder)).map_err(|why| {
-        let folder = folder.display();
-        io::Error::new(why.kind(), format!("cannot write into the folder {folder}: {}", why.kind()))
-    })?;
-    let mut staged = Staged { file, _leftover };
-    write(staged.file.as_file_mut())?;
-    #[cfg(unix)]
-    if let Some(old) = old {
-        use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
-        let file = staged.file.as_file();
-        let new = file.metadata()?;
-        if (new.uid(), new.gid()) != (old.uid(), old.gid()) {
-            // Few may give a file to another owner, or to any group.
-            let _ = fchown(file, None, Some(old.gid()));
-            let _ = fchown(file, Some(old.uid()), None);
-        }
-        file.set_permissions(fs::Permissions::from_mode(old.mode() & 0o777))?;
-    }
-    #[cfg(not(unix))]
-    let _ = old;
-    staged.file.as_file().sync_all()?;
-    Ok(staged)
-}
-
-/// Makes renames in a folder durable, where the system can do that for this folder.
+/// Makes renames in a folder durable, where the system can do that for this folder: some network
+/// file systems cannot, and only Unix opens folders.
 fn sync(folder: &Path) -> io::Result<()> {
-    let Ok(folder) = fs::File::open(folder) else { return Ok(()) };
-    match folder.sync_all() {
-        // Some network file systems have no such thing.
-        Err(why)
-            if matches!(why.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) =>
-        {
-            Ok(())
-        }
-        Err(_) if cfg!(not(unix)) => Ok(()),
-        done => done,
-    }
+    let done = fs::File::open(folder).map_or(Ok(()), |folder| folder.sync_all());
+    done.or_else(|why| match why.kind() {
+        ErrorKind::InvalidInput | ErrorKind::Unsupported => Ok(()),
+        _ if cfg!(not(unix)) => Ok(()),
+        _ => Err(why),
+    })
 }
 
-/// Removes incomplete files that nobody has touched for a day.
+/// Removes incomplete files that have not changed for a day.
 pub(crate) fn remove_abandoned(folder: &Path) {
-    let is_abandoned = |file: &Metadata| {
-        file.modified().is_ok_and(|at| at.elapsed().is_ok_and(|age| age > ABANDONED))
-    };
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
         let name = name.to_string_lossy();
-        let is_partial = name.starts_with(PREFIX) && name.ends_with(SUFFIX);
-        if is_partial
-            && fs::symlink_metadata(entry.path())
-                .is_ok_and(|file| file.is_file() && is_abandoned(&file))
+        let is_old = |file: Metadata| {
+            file.is_file()
+                && file.modified().is_ok_and(|at| at.elapsed().is_ok_and(|age| age > ABANDONED))
+        };
+        // The metadata of an entry are those of a link itself.
+        if name.starts_with(PREFIX) && name.ends_with(SUFFIX) && entry.metadata().is_ok_and(is_old)
         {
             // Tidying up is no reason to fail.
             let _ = fs::remove_file(entry.path());
@@ -304,15 +277,14 @@ pub(crate) fn remove_abandoned(folder: &Path) {
 pub(crate) fn make_folder(path: &Path) -> io::Result<()> {
     let why = match (fs::metadata(path), fs::read_link(path)) {
         (Ok(found), _) if found.is_dir() => return Ok(()),
-        (Ok(found), _) if found.is_file() => "is a file; name a folder".into(),
         (Ok(found), _) => format!("is {}; name a folder", input::name(found.file_type())),
-        (Err(why), Ok(to)) if why.kind() == io::ErrorKind::NotFound => {
+        (Err(why), Ok(to)) if why.kind() == ErrorKind::NotFound => {
             format!("is a link to {}, which does not exist; make that folder first", to.display())
         }
         (Err(_), Ok(_)) => "is a link that leads nowhere; name a folder".into(),
         (Err(_), Err(_)) => return fs::create_dir_all(path),
     };
-    refused(io::ErrorKind::NotADirectory, why)
+    refused(ErrorKind::NotADirectory, why)
 }
 
 /// Writes something into a folder, which is made if it is missing, and again if it goes meanwhile:
@@ -322,7 +294,7 @@ pub(crate) fn in_folder<T>(folder: &Path, mut act: impl FnMut() -> io::Result<T>
     let mut once = || make_folder(folder).and_then(|()| act());
     for _ in 1..TIMES {
         match once() {
-            Err(why) if why.kind() == io::ErrorKind::NotFound => {}
+            Err(why) if why.kind() == ErrorKind::NotFound => {}
             done => return done,
         }
     }

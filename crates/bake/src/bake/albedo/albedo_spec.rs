@@ -11,7 +11,7 @@ use microfacet_tables::{
 };
 
 use super::lobe::{azimuth, stated, tail};
-use super::{AlbedoError, AlbedoLobe, view_of};
+use super::{AlbedoError, AlbedoLobe};
 use crate::bake::names;
 use crate::distribution::Distribution;
 use crate::table_spec::{GAMMA_MIN, Level};
@@ -47,40 +47,6 @@ const CLOSE_FROM: Level = Level(24);
 /// (`cargo run --profile dist -p microfacet-study -- dielectric_views`).
 const HEAVY: f64 = 2.0;
 
-/// Numbers of nodes at a level, found by measuring.
-struct Counts {
-    /// Nodes of the axes of the family: γ, σ and view.
-    shapes: usize,
-    roughnesses: usize,
-    views: usize,
-    /// Nodes of an axis of all indices of refraction.
-    indices: usize,
-    /// Nodes of a quarter of the azimuths, 2ᵏ + 1, and of the views at each azimuth, in the
-    /// smallest table of a lobe that is tried.
-    azimuths: usize,
-    views_of_lobes: usize,
-    /// Error aimed at in every node.
-    tolerance: f64,
-}
-
-impl Counts {
-    fn at(level: Level) -> Self {
-        // The interpolating polynomial reads six nodes.
-        let nodes = |counts| level.nodes(counts, 6);
-        let quality = level.quality() as usize;
-        Self {
-            shapes: nodes([16, 24, 44]),
-            roughnesses: nodes([22, 38, 68]),
-            views: nodes([20, 33, 58]),
-            indices: nodes([20, 32, 48]),
-            // Starting numbers: they are doubled until the error is met.
-            azimuths: [5, 9, 17][quality],
-            views_of_lobes: [17, 33, 65][quality],
-            tolerance: level.between([1e-5, 1e-6, 1e-7]),
-        }
-    }
-}
-
 impl AlbedoSpec {
     /// The specification at a level.
     ///
@@ -100,28 +66,34 @@ impl AlbedoSpec {
     ) -> Result<Self, AlbedoError> {
         reflectance.check_of_table().map_err(AlbedoError::Lobe)?;
         let level = level.into();
-        let counts = Counts::at(level);
+        // All numbers of nodes were found by measuring. The interpolating polynomial reads six.
+        let nodes = |counts| level.nodes(counts, 6);
+        let quality = level.quality() as usize;
         let mut axes = match azimuth(&lobe)? {
-            None => materials(&lobe, &counts),
+            None => materials(&lobe, nodes([16, 24, 44]), nodes([22, 38, 68])),
             Some(azimuth) => {
+                // 2ᵏ + 1 in a quarter of the azimuths to start with, as many as are tried first.
+                let quarter = [5, 9, 17][quality];
                 let count = match lobe.form() {
                     // Its albedo is the same at every azimuth.
                     LobeForm::Distribution => 1,
-                    LobeForm::Ellipsoid => 4 * (counts.azimuths - 1),
-                    LobeForm::Family | LobeForm::StudentT => counts.azimuths,
+                    LobeForm::Ellipsoid => 4 * (quarter - 1),
+                    LobeForm::Family | LobeForm::StudentT => quarter,
                 };
                 vec![Axis::placed("azimuth", Mapping::Azimuth(azimuth), INTERPOLATION, count)]
             }
         };
         axes.extend(reflectance.indices().map(|Interval { min, max }| {
-            let nodes = even_nodes(0.0, 1.0, counts.indices);
+            let all = even_nodes(0.0, 1.0, nodes([20, 32, 48]));
             let [from, to] = [min, max].map(|eta| ReflectanceRoot.coordinate(eta));
-            Axis::new("eta", Mapping::ReflectanceRoot, INTERPOLATION, cut(&nodes, from, to))
+            Axis::new("eta", Mapping::ReflectanceRoot, INTERPOLATION, cut(&all, from, to))
         }));
         let (view, views) = match lobe.is_family() {
-            true if level >= CLOSE_FROM => (ViewBlend::CLOSE, counts.views),
-            true => (ViewBlend::BAKED, counts.views),
-            false => (view_of(tail(&lobe)), counts.views_of_lobes),
+            true if level >= CLOSE_FROM => (ViewBlend::CLOSE, nodes([20, 33, 58])),
+            true => (ViewBlend::BAKED, nodes([20, 33, 58])),
+            // γ of a single lobe is a constant here, so that readers supply none; the number of
+            // nodes is doubled until the error is met.
+            false => (ViewBlend::BAKED.of_shape(tail(&lobe)), [17, 33, 65][quality]),
         };
         axes.push(if reflectance.side() == Some(Side::Dense) {
             // E changes fast where total reflection sets in, and transmission where upright facets
@@ -138,7 +110,8 @@ impl AlbedoSpec {
         } else {
             Axis::placed("view", Mapping::ViewBlend(view), INTERPOLATION, views)
         });
-        Ok(Self { lobe, reflectance, maskings, axes, tolerance: counts.tolerance, precision })
+        let tolerance = level.between([1e-5, 1e-6, 1e-7]);
+        Ok(Self { lobe, reflectance, maskings, axes, tolerance, precision })
     }
 
     /// The moments of the whole family, for both forms of masking.
@@ -267,12 +240,12 @@ fn is_of_view(axis: &Axis) -> bool {
 }
 
 /// The axes of γ and σ for round lobes.
-fn materials(lobe: &AlbedoLobe, counts: &Counts) -> Vec<Axis> {
+fn materials(lobe: &AlbedoLobe, shapes: usize, roughnesses: usize) -> Vec<Axis> {
     let (gamma, sigma) = (lobe.gamma, lobe.roughness.x());
     let shape = |gamma: f64| LogShape::BAKED.coordinate(gamma);
     let roughness = |sigma: f64| LogRoughness::BAKED.coordinate(sigma);
-    let shapes = even_nodes(shape(f64::INFINITY), shape(GAMMA_MIN), counts.shapes);
-    let roughnesses = even_nodes(roughness(SIGMA_MIN), roughness(SIGMA_MAX), counts.roughnesses);
+    let shapes = even_nodes(shape(f64::INFINITY), shape(GAMMA_MIN), shapes);
+    let roughnesses = even_nodes(roughness(SIGMA_MIN), roughness(SIGMA_MAX), roughnesses);
     // Surfaces smoother than the first node count as mirrors.
     let [from, to] = if sigma.min < SIGMA_MIN {
         [SIGMA_MIN, sigma.max.max(2.0 * SIGMA_MIN)]

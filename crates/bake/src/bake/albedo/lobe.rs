@@ -29,9 +29,6 @@ pub(crate) fn stated(lobe: &AlbedoLobe) -> LobeSpec {
 
 /// The mapping of the azimuth axis of a lobe; `None` for the family, whose albedo is the same at
 /// every azimuth.
-///
-/// # Errors
-/// [`AlbedoError`] for parameters that describe no ellipsoid.
 pub(super) fn azimuth(lobe: &AlbedoLobe) -> Result<Option<Azimuth>, AlbedoError> {
     Ok(match lobe.form() {
         LobeForm::Family => None,
@@ -55,9 +52,6 @@ pub(super) fn tail(lobe: &AlbedoLobe) -> f64 {
 }
 
 /// A tilted lobe, whose masking is clamped.
-///
-/// # Errors
-/// [`AlbedoError`] for any other, or parameters that describe no ellipsoid.
 pub(crate) fn ellipsoid(lobe: &AlbedoLobe) -> Result<Ellipsoid, AlbedoError> {
     let refused = |why: EllipsoidError| AlbedoError::Lobe(why.to_string());
     let theta = lobe.theta.ok_or_else(|| AlbedoError::Lobe("the lobe is not tilted".into()))?;
@@ -171,9 +165,6 @@ impl Model<'_> {
     }
 
     /// The isotropic lobe of the family with the σ of the place; it has a model of refraction.
-    ///
-    /// # Errors
-    /// [`AlbedoError::Lobe`] for other lobes.
     pub(super) fn round(&self, site: &Site) -> Result<(&AlbedoIntegrator, f64), AlbedoError> {
         match self {
             Self::StudentT(None, model) => Ok((model, site.sigma)),

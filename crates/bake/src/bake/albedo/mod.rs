@@ -20,7 +20,6 @@ use rayon::prelude::*;
 use microfacet_model::{Albedo, ParameterError};
 use microfacet_sampler::albedo::Albedo as TabulatedAlbedo;
 use microfacet_sampler::{Masking, MaterialError};
-use microfacet_tables::axis::ViewBlend;
 use microfacet_tables::{
     Axis, Certificate, Kind, LoadError, Mapping, Precision, Reflectance, Table,
 };
@@ -66,16 +65,21 @@ impl Site {
                     let [c, s] = azimuth.direction(t);
                     (site.phi, site.sigma) = (azimuth.quantity(t), azimuth.sigma(c, s));
                 }
-                Mapping::ViewBlend(view) => {
-                    site.cos = view.prepare(site.sigma, site.gamma).quantity(t)
-                }
-                Mapping::CriticalBlend(view) => {
-                    site.cos = view.prepare(site.sigma, site.gamma, 1.0 / site.eta).quantity(t);
-                }
-                _ => unreachable!("no axis of an albedo"),
+                _ => site.cos = site.cos_at(axis, t),
             }
         }
         site
+    }
+
+    /// cos θ at a coordinate along the axis of the view, for the material of the place.
+    pub(crate) fn cos_at(&self, axis: &Axis, t: f64) -> f64 {
+        match axis.mapping {
+            Mapping::ViewBlend(view) => view.prepare(self.sigma, self.gamma).quantity(t),
+            Mapping::CriticalBlend(view) => {
+                view.prepare(self.sigma, self.gamma, 1.0 / self.eta).quantity(t)
+            }
+            _ => unreachable!("no axis of a view"),
+        }
     }
 
     /// The direction of the view.
@@ -87,15 +91,20 @@ impl Site {
 
     /// All places of a table, the last axis fastest.
     pub(crate) fn all(axes: &[Axis]) -> Vec<Self> {
-        let mut at: Vec<Vec<f64>> = vec![Vec::new()];
-        for axis in axes {
-            let longer = |t: &Vec<f64>| -> Vec<Vec<f64>> {
-                axis.nodes.iter().map(|&node| [&t[..], &[node]].concat()).collect()
-            };
-            at = at.iter().flat_map(longer).collect();
-        }
-        at.into_par_iter().map(|at| Self::new(axes, &at)).collect()
+        product(axes.iter().map(|axis| &axis.nodes))
+            .into_par_iter()
+            .map(|at| Self::new(axes, &at))
+            .collect()
     }
+}
+
+/// All combinations of one number of each list, those of the last fastest.
+pub(crate) fn product<'a>(lists: impl IntoIterator<Item = &'a Vec<f64>>) -> Vec<Vec<f64>> {
+    lists.into_iter().fold(vec![Vec::new()], |all, list| {
+        let longer =
+            |at: &Vec<f64>| list.iter().map(|&x| [&at[..], &[x]].concat()).collect::<Vec<_>>();
+        all.iter().flat_map(longer).collect()
+    })
 }
 
 impl fmt::Display for Site {
@@ -107,12 +116,14 @@ impl fmt::Display for Site {
 }
 
 /// Why a bake of albedos failed.
-#[derive(Clone, PartialEq)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 pub enum AlbedoError {
     /// A parameter outside the domain of the model.
-    Parameter(ParameterError),
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
     /// A node whose E is NaN, or above 1 by more than its error estimate: a fault of the
     /// quadrature, which must not reach a table.
+    #[error("albedo {value} at {at}: it must lie in [0, 1]; please report it")]
     Albedo {
         /// The place.
         at: Site,
@@ -120,6 +131,10 @@ pub enum AlbedoError {
         value: f64,
     },
     /// A node whose error estimate exceeds what is allowed.
+    #[error(
+        "the quadrature of an albedo reaches only {error:e} at {at}; keep such materials out of the \
+         recipe's ranges of sigma and gamma, and please report it"
+    )]
     Accuracy {
         /// The place.
         at: Site,
@@ -127,55 +142,17 @@ pub enum AlbedoError {
         error: f64,
     },
     /// The lobe has no such albedo.
+    #[error("{0}")]
     Lobe(String),
     /// A table does not cover the material it was baked for.
-    Material(MaterialError),
+    #[error(transparent)]
+    Material(#[from] MaterialError),
     /// The tables could not be loaded.
-    Table(LoadError),
-}
-
-impl fmt::Display for AlbedoError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Parameter(why) => why.fmt(f),
-            Self::Albedo { at, value } => {
-                write!(f, "albedo {value} at {at}: it must lie in [0, 1]; please report it")
-            }
-            Self::Accuracy { at, error } => {
-                write!(
-                    f,
-                    "the quadrature of an albedo reaches only {error:e} at {at}; keep such materials out of the recipe's ranges of \
-                     sigma and gamma, and please report it"
-                )
-            }
-            Self::Lobe(why) => why.fmt(f),
-            Self::Material(why) => why.fmt(f),
-            Self::Table(why) => why.fmt(f),
-        }
-    }
+    #[error(transparent)]
+    Table(#[from] LoadError),
 }
 
 microfacet_core::debug_in_words!(AlbedoError);
-
-impl std::error::Error for AlbedoError {}
-
-impl From<ParameterError> for AlbedoError {
-    fn from(why: ParameterError) -> Self {
-        Self::Parameter(why)
-    }
-}
-
-impl From<MaterialError> for AlbedoError {
-    fn from(why: MaterialError) -> Self {
-        Self::Material(why)
-    }
-}
-
-impl From<LoadError> for AlbedoError {
-    fn from(why: LoadError) -> Self {
-        Self::Table(why)
-    }
-}
 
 /// Bakes the tables of a specification: a directional albedo for each form of masking and, for the
 /// moments of the family, their averages.
@@ -192,9 +169,6 @@ pub fn bake(spec: &AlbedoSpec) -> Result<Vec<Table>, AlbedoError> {
 
 /// Bakes the tables in several precisions from one pass over the nodes, which takes nearly all the
 /// time; each node is one step of the stage.
-///
-/// # Errors
-/// As [`bake`].
 pub fn bake_in(
     spec: &AlbedoSpec,
     precisions: &[Precision],
@@ -331,9 +305,4 @@ fn average(spec: &AlbedoSpec, directional: &Table, masking: Masking) -> Result<T
         certificate: Default::default(),
         ..directional.clone()
     })
-}
-
-/// The view coordinate of a single lobe: its γ is a constant here, so that readers supply none.
-fn view_of(gamma: f64) -> ViewBlend {
-    ViewBlend::BAKED.of_shape(gamma)
 }

@@ -3,137 +3,98 @@
 use microfacet_sampler::Metal;
 use microfacet_sampler::bsdf::UnknownMetal;
 
-use super::{CONDUCTOR_KEYS, FRESNEL_KEYS, Source, Value, quoted};
+use super::write::quoted;
+use super::{CONDUCTOR_KEYS, Entry, FRESNEL_KEYS};
 use crate::scene::error::did_you_mean;
 use crate::scene::{Masking, Reflectance, SceneError};
 
-impl Source<'_> {
-    pub(super) fn fresnel(&self, value: &Value<'_>) -> Result<Reflectance, SceneError> {
-        let place = self.place(value.span());
-        let forms = "fresnel must be \"mirror\", { schlick = F0 }, { schlick = [r, g, b] }, \
-                     { metal = \"gold\" }, \
-                     { conductor = { eta = [r, g, b], k = [r, g, b] } } or { dielectric = eta }, a number or \
-                     { min = .., max = .. }";
-        if value.get_ref().as_str() == Some("mirror") {
+const FORMS: &str = "\"mirror\", { schlick = F0 }, { schlick = [r, g, b] }, { metal = \"gold\" }, \
+                     { conductor = { eta = [r, g, b], k = [r, g, b] } } or { dielectric = eta }, \
+                     a number or { min = .., max = .. }";
+
+impl<'a> Entry<'a> {
+    pub(super) fn fresnel(self) -> Result<Reflectance, SceneError> {
+        if self.text() == Some("mirror") {
             return Ok(Reflectance::Mirror);
         }
-        let table = value.get_ref().as_table().ok_or_else(|| place.invalid(forms))?;
-        self.only_keys(table, &FRESNEL_KEYS)?;
-        let mut entries = table.iter();
-        let (Some((form, value)), None) = (entries.next(), entries.next()) else {
-            return Err(place.invalid(forms));
+        self.only_keys(&FRESNEL_KEYS)?;
+        let mut forms = FRESNEL_KEYS.iter().filter_map(|key| self.field(key));
+        let (Some(form), None) = (forms.next(), forms.next()) else {
+            return self.expected(FORMS);
         };
-        match form.get_ref().as_ref() {
-            "schlick" => {
-                let f0 = |value: &Value<'_>| {
-                    let f0 = self.number(value, "schlick")?;
-                    let valid = (0.0..=1.0).contains(&f0);
-                    self.check(value, valid, "schlick", "a reflectance from 0 to 1")?;
-                    Ok(f0)
-                };
-                if value.get_ref().is_array() {
-                    return Ok(Reflectance::Schlick(self.rgb(
-                        value,
-                        "schlick",
-                        "[0.95, 0.64, 0.54]",
-                        f0,
-                    )?));
-                }
-                Ok(Reflectance::Schlick([f0(value)?; 3]))
+        Ok(match form.key {
+            "schlick" if form.list().is_some() => {
+                Reflectance::Schlick(form.rgb("[0.95, 0.64, 0.54]", Entry::share)?)
             }
-            "metal" => self.metal(value),
-            "dielectric" if value.get_ref().is_table() => {
-                let eta = self.interval(value, "dielectric")?;
-                let valid = eta.min >= 1.0 && eta.min < f64::INFINITY && eta.min < eta.max;
-                let what = "a range of indices inside over outside, from 1 or more up to \"inf\"; both sides are baked";
-                self.check(value, valid, "dielectric", what)?;
-                Ok(Reflectance::Dielectric(eta))
-            }
-            "dielectric" => Ok(Reflectance::dielectric(self.index(value, "dielectric")?)),
-            _ => {
-                let table = value.get_ref().as_table().ok_or_else(|| place.invalid(forms))?;
-                self.only_keys(table, &CONDUCTOR_KEYS)?;
-                let (Some(eta), Some(k)) = (table.get("eta"), table.get("k")) else {
-                    return Err(
-                        place.invalid("a conductor needs both eta = [r, g, b] and k = [r, g, b]")
+            "schlick" => Reflectance::Schlick([form.share()?; 3]),
+            "metal" => form.metal()?.into(),
+            "dielectric" if form.table().is_some() => {
+                let eta = form.interval()?;
+                if !(eta.min >= 1.0 && eta.min < f64::INFINITY && eta.min < eta.max) {
+                    return form.out_of_range(
+                        "a range of indices inside over outside, from 1 or more up to \"inf\"; \
+                         both sides are baked",
                     );
-                };
-                Ok(Reflectance::Conductor {
-                    eta: self
-                        .rgb(eta, "eta", "[0.2, 0.9, 1.1]", |value| self.index(value, "eta"))?,
-                    k: self.rgb(k, "k", "[3.9, 2.4, 2.2]", |value| {
-                        let k = self.number(value, "k")?;
-                        let valid = (0.0..f64::INFINITY).contains(&k);
-                        self.check(
-                            value,
-                            valid,
-                            "k",
-                            "an extinction coefficient, finite and 0 or more",
-                        )?;
-                        Ok(k)
-                    })?,
-                })
+                }
+                Reflectance::Dielectric(eta)
             }
-        }
+            "dielectric" => Reflectance::dielectric(form.index()?),
+            _ => {
+                form.only_keys(&CONDUCTOR_KEYS)?;
+                let (Some(eta), Some(k)) = (form.field("eta"), form.field("k")) else {
+                    return form
+                        .invalid("a conductor needs both eta = [r, g, b] and k = [r, g, b]");
+                };
+                Reflectance::Conductor {
+                    eta: eta.rgb("[0.2, 0.9, 1.1]", Entry::index)?,
+                    k: k.rgb("[3.9, 2.4, 2.2]", |k| {
+                        let what = "an extinction coefficient, finite and 0 or more";
+                        k.number_where(|k| (0.0..f64::INFINITY).contains(&k), what)
+                    })?,
+                }
+            }
+        })
     }
 
-    fn metal(&self, value: &Value<'_>) -> Result<Reflectance, SceneError> {
-        let invalid = |what: String| self.place(value.span()).invalid(what);
-        let Some(name) = value.get_ref().as_str() else {
-            let text = self.text.get(value.span()).unwrap_or_default();
-            let why = UnknownMetal;
-            return Err(invalid(format!("metal = {text} is not a name in quotes; {why}")));
+    fn share(self) -> Result<f64, SceneError> {
+        self.number_where(|f0| (0.0..=1.0).contains(&f0), "a reflectance from 0 to 1")
+    }
+
+    fn index(self) -> Result<f64, SceneError> {
+        let what = "an index of refraction, finite and more than 0";
+        self.number_where(|eta| eta > 0.0 && eta < f64::INFINITY, what)
+    }
+
+    fn metal(self) -> Result<Metal, SceneError> {
+        let Some(name) = self.text() else {
+            let text = self.written();
+            return self.invalid(format!("metal = {text} is not a name in quotes; {UnknownMetal}"));
         };
-        let metal: Metal = name.parse().map_err(|why: UnknownMetal| {
+        name.parse().or_else(|why: UnknownMetal| {
             let hint = did_you_mean(name, &Metal::ALL.map(Metal::name));
-            invalid(format!("no metal is known as {}{hint}; {why}", quoted(name)))
-        })?;
-        Ok(metal.into())
-    }
-
-    fn index(&self, value: &Value<'_>, key: &str) -> Result<f64, SceneError> {
-        let eta = self.number(value, key)?;
-        let valid = eta > 0.0 && eta < f64::INFINITY;
-        self.check(value, valid, key, "an index of refraction, finite and more than 0")?;
-        Ok(eta)
-    }
-
-    fn check(
-        &self,
-        value: &Value<'_>,
-        valid: bool,
-        key: &str,
-        what: &str,
-    ) -> Result<(), SceneError> {
-        if valid {
-            return Ok(());
-        }
-        let text = self.text.get(value.span()).unwrap_or_default();
-        Err(self
-            .place(value.span())
-            .invalid(format!("{key} = {text} is out of range; it must be {what}")))
+            self.invalid(format!("no metal is known as {}{hint}; {why}", quoted(name)))
+        })
     }
 
     fn rgb(
-        &self,
-        value: &Value<'_>,
-        key: &str,
+        self,
         example: &str,
-        channel: impl Fn(&Value<'_>) -> Result<f64, SceneError>,
+        channel: impl Fn(Self) -> Result<f64, SceneError>,
     ) -> Result<[f64; 3], SceneError> {
-        match value.get_ref().as_array().map(|array| &array[..]) {
-            Some([r, g, b]) => Ok([channel(r)?, channel(g)?, channel(b)?]),
-            _ => Err(self.place(value.span()).invalid(format!(
-                "{key} must be three numbers, for red, green and blue: {key} = {example}"
-            ))),
-        }
+        let Some([r, g, b]) = self.list_of() else {
+            let key = self.key;
+            return self.expected(&format!(
+                "three numbers, for red, green and blue, such as {key} = {example}"
+            ));
+        };
+        Ok([channel(r)?, channel(g)?, channel(b)?])
     }
 
-    pub(super) fn masking(&self, value: &Value<'_>) -> Result<Masking, SceneError> {
-        let name = value.get_ref().as_str().unwrap_or_default();
-        name.parse().map_err(|why: microfacet_core::UnknownMasking| {
+    pub(super) fn masking(self) -> Result<Masking, SceneError> {
+        let name = self.text().unwrap_or_default();
+        name.parse().or_else(|why: microfacet_core::UnknownMasking| {
             let hint = did_you_mean(name, &Masking::ALL.map(Masking::name));
-            self.place(value.span()).invalid(format!("{why}{hint}"))
+            self.invalid(format!("{why}{hint}"))
         })
     }
 }

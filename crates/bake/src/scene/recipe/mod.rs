@@ -14,7 +14,6 @@
 
 mod fresnel;
 mod lobe;
-mod parts;
 mod write;
 
 use std::cell::RefCell;
@@ -27,13 +26,10 @@ use microfacet_tables::Interval;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::scene::limits;
-use crate::scene::limits::Budget;
-
-use self::parts::parts;
 use self::write::quoted;
 pub(super) use self::write::write;
 use super::error::{Lines, did_you_mean_key};
+use super::limits::{self, Budget};
 use super::{Format, Material, Origin, Place, Scene, SceneError, SceneErrorKind};
 use crate::input;
 
@@ -67,15 +63,33 @@ pub(super) fn read(text: &str, file: &Path) -> Result<Scene, SceneError> {
     read_parts(text, file, parts(text), limits::RECIPE_MATERIALS)
 }
 
+/// The parts of a recipe, which are parsed one by one so that memory holds the tree of one alone:
+/// from one line with `[[material]]` to the next, and all before the second.
+///
+/// The tree of a part does not depend on those before it, since nothing but materials may stand at
+/// the top of a recipe; the first has all that may come before, such as another `material`. A text
+/// with strings of several lines, in which the same line may stand, is one part.
+fn parts(text: &str) -> Vec<Range<usize>> {
+    let has_long_strings = ["\"\"\"", "'''"].iter().any(|quotes| text.contains(quotes));
+    let headers = text.match_indices("[[material]]").map(|(at, _)| at).filter(|&at| {
+        let before = text[..at].trim_end_matches([' ', '\t']);
+        !has_long_strings && (before.is_empty() || before.ends_with('\n'))
+    });
+    let mut ends: Vec<usize> = headers.skip(1).collect();
+    ends.push(text.len());
+    let starts = [0].into_iter().chain(ends.clone());
+    starts.zip(ends).map(|(start, end)| start..end).collect()
+}
+
 /// Reads it part by part, and at most so many materials; the first part with an error ends it.
 fn read_parts(
     text: &str,
     file: &Path,
-    parts: impl IntoIterator<Item = Range<usize>>,
+    parts: Vec<Range<usize>>,
     most: usize,
 ) -> Result<Scene, SceneError> {
+    let invalid = |why: &str| Err(Place::file(file).invalid(why));
     let lines = Lines::new(file, text.as_bytes());
-    let warnings = RefCell::default();
     let mut source = Source {
         text: "",
         start: 0,
@@ -83,17 +97,16 @@ fn read_parts(
         lines: &lines,
         measured: Budget::new(limits::MEASURED),
         distributions: Budget::new(limits::DISTRIBUTIONS),
-        warnings: &warnings,
+        warnings: RefCell::default(),
     };
-    let mut materials = Vec::new();
+    let mut materials: Vec<Material> = Vec::new();
     // The line that each name is from.
     let mut names: HashMap<String, u32> = HashMap::new();
     for part in parts {
         (source.text, source.start) = (&text[part.clone()], part.start);
-        source.read(|material| {
+        for material in source.materials()? {
             if materials.len() == most {
-                return Err(Place::file(file)
-                    .invalid(format!("the recipe has more than {most} materials; split it")));
+                return invalid(&format!("the recipe has more than {most} materials; split it"));
             }
             let place = &material.origin.place;
             let line = place.line.unwrap_or(0);
@@ -105,16 +118,15 @@ fn read_parts(
                 )));
             }
             materials.push(material);
-            Ok(())
-        })?;
+        }
     }
     if materials.is_empty() {
-        return Err(Place::file(file).invalid(
+        return invalid(
             "the recipe has no materials; add at least one:\n\
              [[material]]\nname = \"gold\"\nsigma = 0.3\ngamma = 2.0",
-        ));
+        );
     }
-    Ok(Scene { materials, warnings: warnings.take(), ..Scene::default() })
+    Ok(Scene { materials, warnings: source.warnings.take(), ..Scene::default() })
 }
 
 /// A part of a recipe, which is parsed by itself.
@@ -129,22 +141,16 @@ struct Source<'a> {
     /// Bytes of measured distributions.
     measured: Budget,
     distributions: Budget,
-    warnings: &'a RefCell<Vec<String>>,
+    warnings: RefCell<Vec<String>>,
 }
-
-type Table<'a> = DeTable<'a>;
-type Value<'a> = Spanned<DeValue<'a>>;
 
 impl Source<'_> {
     fn place(&self, span: Range<usize>) -> Place {
         self.lines.place(self.start + span.start)
     }
 
-    /// Reads the materials of the part, in order, and hands them to `add`.
-    fn read(
-        &self,
-        mut add: impl FnMut(Material) -> Result<(), SceneError>,
-    ) -> Result<(), SceneError> {
+    /// The materials of the part, in order.
+    fn materials(&self) -> Result<Vec<Material>, SceneError> {
         if self.text.len() as u64 > limits::RECIPE_PART {
             return Err(self.place(0..0).invalid(format!(
                 "from here to the next [[material]] the recipe has {} bytes, and at most {} MiB \
@@ -155,62 +161,93 @@ impl Source<'_> {
         }
         let document = DeTable::parse(self.text)
             .map_err(|error| self.place(error.span().unwrap_or(0..0)).syntax(error.message()))?;
-        let document = document.get_ref();
-        self.only_keys(document, &["material"])?;
-        let Some(value) = document.get("material") else { return Ok(()) };
-        let entries = value.get_ref().as_array().ok_or_else(|| {
-            self.place(value.span())
-                .invalid("`material` must be a list: head each material with [[material]]")
-        })?;
-        entries.iter().try_for_each(|entry| add(self.material(entry)?))
+        let document = Spanned::new(document.span(), DeValue::Table(document.into_inner()));
+        let document = Entry { source: self, key: "recipe", value: &document };
+        document.only_keys(&["material"])?;
+        let Some(list) = document.field("material") else { return Ok(Vec::new()) };
+        match list.list() {
+            Some(entries) => entries.iter().map(|entry| list.with(entry).material()).collect(),
+            None => list.invalid("`material` must be a list: head each material with [[material]]"),
+        }
+    }
+}
+
+/// A value of a recipe, and the key that messages name it by.
+#[derive(Clone, Copy)]
+struct Entry<'a> {
+    source: &'a Source<'a>,
+    key: &'a str,
+    value: &'a Spanned<DeValue<'a>>,
+}
+
+impl<'a> Entry<'a> {
+    fn with(self, value: &'a Spanned<DeValue<'a>>) -> Self {
+        Self { value, ..self }
     }
 
-    fn material(&self, entry: &Value<'_>) -> Result<Material, SceneError> {
-        let place = self.place(entry.span());
-        let table = entry.get_ref().as_table().ok_or_else(|| {
-            place.invalid("a material must be a table: head each material with [[material]]")
-        })?;
-        let lobe = self.lobe(&place, table)?;
-        let name = self.required(&place, table, "name", "\"gold\"")?;
-        let name = match name.get_ref().as_str() {
-            Some(text) if !text.is_empty() => text.to_owned(),
-            _ => {
-                return Err(self
-                    .place(name.span())
-                    .invalid("`name` must be a text that is not empty"));
-            }
-        };
-        Ok(Material {
-            name,
-            lobe,
-            fresnel: table.get("fresnel").map(|v| self.fresnel(v)).transpose()?,
-            masking: table.get("masking").map(|v| self.masking(v)).transpose()?,
-            origin: Origin { format: Format::Recipe, place, lobe: None },
-            used: true,
+    fn place(self) -> Place {
+        self.source.place(self.value.span())
+    }
+
+    /// The value as the recipe has it.
+    fn written(self) -> &'a str {
+        self.source.text.get(self.value.span()).unwrap_or("this")
+    }
+
+    fn error(self, why: impl ToString) -> SceneError {
+        self.place().invalid(why.to_string())
+    }
+
+    fn invalid<T>(self, why: impl ToString) -> Result<T, SceneError> {
+        Err(self.error(why))
+    }
+
+    fn expected<T>(self, what: &str) -> Result<T, SceneError> {
+        self.invalid(format!("{} must be {what}, not {}", self.key, self.written()))
+    }
+
+    fn out_of_range<T>(self, range: &str) -> Result<T, SceneError> {
+        let Self { key, .. } = self;
+        self.invalid(format!("{key} = {} is out of range; it must be {range}", self.written()))
+    }
+
+    fn text(self) -> Option<&'a str> {
+        self.value.get_ref().as_str()
+    }
+
+    fn table(self) -> Option<&'a DeTable<'a>> {
+        self.value.get_ref().as_table()
+    }
+
+    fn list(self) -> Option<&'a [Spanned<DeValue<'a>>]> {
+        self.value.get_ref().as_array().map(|list| &list[..])
+    }
+
+    /// The values of a list of so many.
+    fn list_of<const N: usize>(self) -> Option<[Self; N]> {
+        let list: &[_; N] = self.list()?.try_into().ok()?;
+        Some(list.each_ref().map(|value| self.with(value)))
+    }
+
+    /// What a table has under a key.
+    fn field(self, key: &'a str) -> Option<Self> {
+        let value = self.table()?.get(key)?;
+        Some(Self { key, value, ..self })
+    }
+
+    fn required(self, key: &'a str, example: &str) -> Result<Self, SceneError> {
+        self.field(key).ok_or_else(|| {
+            let Self { key: of, .. } = self;
+            self.error(format!("the {of} has no `{key}`; add for example {key} = {example}"))
         })
     }
 
-    /// The value of a key that a material must have.
-    fn required<'t>(
-        &self,
-        place: &Place,
-        table: &'t Table<'_>,
-        key: &str,
-        example: &str,
-    ) -> Result<&'t Value<'t>, SceneError> {
-        table.get(key).ok_or_else(|| {
-            place.invalid(format!("the material has no `{key}`; add for example {key} = {example}"))
-        })
-    }
-
-    fn warn(&self, place: &Place, message: String) {
-        self.warnings.borrow_mut().push(format!("{place}: {message}"));
-    }
-
-    fn only_keys(&self, table: &Table<'_>, known: &[&str]) -> Result<(), SceneError> {
-        match table.keys().find(|key| !known.contains(&key.get_ref().as_ref())) {
+    /// Checks that a table has no other keys; what is no table has none.
+    fn only_keys(self, known: &[&str]) -> Result<(), SceneError> {
+        let mut keys = self.table().into_iter().flat_map(|table| table.keys());
+        match keys.find(|key| !known.contains(&key.get_ref().as_ref())) {
             None => Ok(()),
-            Some(key) => Err(self.place(key.span()).invalid(format!(
+            Some(key) => Err(self.source.place(key.span()).invalid(format!(
                 "unknown key `{}`{}; the keys here are {}",
                 key.get_ref(),
                 did_you_mean_key(key.get_ref(), known),
@@ -219,29 +256,48 @@ impl Source<'_> {
         }
     }
 
-    fn interval(&self, value: &Value<'_>, key: &str) -> Result<Interval, SceneError> {
-        let Some(table) = value.get_ref().as_table() else {
-            return Ok(Interval::point(self.number(value, key)?));
-        };
-        self.only_keys(table, &RANGE_KEYS)?;
-        let (Some(min), Some(max)) = (table.get("min"), table.get("max")) else {
-            return Err(self
-                .place(value.span())
-                .invalid(format!("a range of {key} needs both ends: {{ min = .., max = .. }}")));
-        };
-        let (min, max) = (self.number(min, key)?, self.number(max, key)?);
-        if min <= max {
-            Ok(Interval { min, max })
-        } else {
-            Err(self.place(value.span()).invalid(format!(
-                "the range of {key} is inverted: min = {min} is more than max = {max}; exchange them"
-            )))
+    fn material(self) -> Result<Material, SceneError> {
+        if self.table().is_none() {
+            return self
+                .invalid("a material must be a table: head each material with [[material]]");
         }
+        let lobe = self.lobe()?;
+        let name = self.required("name", "\"gold\"")?;
+        let Some(text) = name.text().filter(|text| !text.is_empty()) else {
+            return name.expected("a text that is not empty");
+        };
+        Ok(Material {
+            name: text.to_owned(),
+            lobe,
+            fresnel: self.field("fresnel").map(Entry::fresnel).transpose()?,
+            masking: self.field("masking").map(Entry::masking).transpose()?,
+            origin: Origin { format: Format::Recipe, place: self.place(), lobe: None },
+            used: true,
+        })
+    }
+
+    fn interval(self) -> Result<Interval, SceneError> {
+        if self.table().is_none() {
+            return Ok(Interval::point(self.number()?));
+        }
+        let key = self.key;
+        self.only_keys(&RANGE_KEYS)?;
+        let (Some(min), Some(max)) = (self.field("min"), self.field("max")) else {
+            return self
+                .invalid(format!("a range of {key} needs both ends: {{ min = .., max = .. }}"));
+        };
+        let (min, max) = (Self { key, ..min }.number()?, Self { key, ..max }.number()?);
+        if min <= max {
+            return Ok(Interval { min, max });
+        }
+        self.invalid(format!(
+            "the range of {key} is inverted: min = {min} is more than max = {max}; exchange them"
+        ))
     }
 
     /// A number that is not NaN; "inf" and "Infinity" are infinity.
-    fn number(&self, value: &Value<'_>, key: &str) -> Result<f64, SceneError> {
-        let number = match value.get_ref() {
+    fn number(self) -> Result<f64, SceneError> {
+        let number = match self.value.get_ref() {
             DeValue::Integer(digits) if digits.radix() == 10 => digits.as_str().parse().ok(),
             DeValue::Float(digits) => digits.as_str().parse().ok(),
             // TOML has `inf` alone; in quotes it is what Rust reads, in upper case or lower.
@@ -250,25 +306,15 @@ impl Source<'_> {
         };
         match number {
             Some(number) if !f64::is_nan(number) => Ok(number),
-            _ => Err(self.place(value.span()).invalid(format!(
-                "{key} must be a number, not {}",
-                self.text.get(value.span()).unwrap_or("this")
-            ))),
+            _ => self.expected("a number"),
         }
+    }
+
+    fn number_where(self, is_valid: impl Fn(f64) -> bool, range: &str) -> Result<f64, SceneError> {
+        let number = self.number()?;
+        if is_valid(number) { Ok(number) } else { self.out_of_range(range) }
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_page_of_recipes_has_every_key() {
-        let page = include_str!("../../../../../docs/recipe.md");
-        let keys: [&[&str]; 5] =
-            [&MATERIAL_KEYS, &MEASURED_KEYS, &FRESNEL_KEYS, &CONDUCTOR_KEYS, &RANGE_KEYS];
-        for key in keys.concat() {
-            assert!(page.contains(&format!("`{key}`")), "docs/recipe.md: no `{key}`");
-        }
-    }
-}
+mod tests;
