@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering::Relaxed;
 use std::time::Instant;
 
-use clap::ValueEnum;
+use serde_json::{Value, json};
 
 use microfacet_baker::cache::Cache;
 use microfacet_baker::input::MAX_TABLES;
@@ -16,14 +16,20 @@ use microfacet_baker::library::{Library, Part, Shard};
 use microfacet_baker::plan::{Plan, set_cost};
 use microfacet_baker::progress::Meter;
 use microfacet_baker::scene::Scene;
-use microfacet_baker::store::{Format, OutputFolder};
+use microfacet_baker::store::{Format, OutputFolder, Written};
 use microfacet_baker::table_set::{Baked, Settings, Target, bake_with};
 
 use super::plan::{Outline, remind};
 use super::request::Request;
+use super::values::{self, Named, named, number};
 use super::words::shell;
-use super::{Done, Failure, Outcome, interrupt, print_json, progress, report, summarize, values};
+use super::{Result, ensure, interrupt, is_stream, print_json, progress, summarize, warn};
 use summary::Summary;
+
+const FORMATS: [Named<Format>; 2] = [
+    ("safetensors", "tables.safetensors", Format::Safetensors),
+    ("exr", "tables.exr, an OpenEXR image of one part a table", Format::Exr),
+];
 
 /// Bake tables for a recipe or scene, or without one for every sigma and gamma.
 #[derive(clap::Args)]
@@ -44,8 +50,8 @@ pub(super) struct Args {
     #[arg(long, value_name = "I/N", value_parser = str::parse::<Shard>, requires_all = ["scene", "cache"], conflicts_with_all = ["out", "format", "split", "max_bytes", "no_cache"])]
     shard: Option<Shard>,
     /// Container format.
-    #[arg(long, value_enum, default_value_t)]
-    format: FormatArg,
+    #[arg(long, value_parser = named(&FORMATS), default_value = "safetensors")]
+    format: Format,
     /// With --format exr: instead of one file write an image NAME.exr for each table, for programs
     /// that open no parts. Such a folder is no set.
     #[arg(long)]
@@ -54,7 +60,7 @@ pub(super) struct Args {
     request: Request,
     /// Choose each table's nodes and precision instead: small tables whose measured error (of G1,
     /// the CDFs of slopes, and albedos) is at most this.
-    #[arg(long, value_name = "E", value_parser = parse_error, conflicts_with_all = ["quality", "precision"])]
+    #[arg(long, value_name = "E", value_parser = number(|&error| error > 0.0 && error <= 0.1, "a number in (0, 0.1], such as 1e-4"), conflicts_with_all = ["quality", "precision"])]
     max_error: Option<f64>,
     /// Choose the most accurate tables instead whose safetensors file is at most this large.
     #[arg(long, value_name = "BYTES", value_parser = parse_size, conflicts_with_all = ["quality", "precision"])]
@@ -80,22 +86,6 @@ pub(super) struct Args {
     /// Print the summary as JSON.
     #[arg(long)]
     json: bool,
-}
-
-#[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-enum FormatArg {
-    /// tables.safetensors.
-    #[default]
-    Safetensors,
-    /// tables.exr, an OpenEXR image of one part a table.
-    Exr,
-}
-
-fn parse_error(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(error) if error > 0.0 && error <= 0.1 => Ok(error),
-        _ => Err(format!("\"{text}\" must be a number in (0, 0.1], such as 1e-4")),
-    }
 }
 
 /// Parses the largest size of a set: what is read back.
@@ -128,31 +118,30 @@ impl Args {
     }
 
     /// Reads a scene, says what is doubtful in it before hours are spent, and plans its sets.
-    fn library(&self, path: &Path) -> Result<Library, Failure> {
-        if path.is_dir() {
-            let (name, command) = (path.display(), shell(path));
-            return Err(Failure(format!(
-                "{name}: is a folder; name one scene, or see `microfacet-bake plan {command}`"
-            )));
-        }
+    fn library(&self, path: &Path) -> Result<Library> {
+        ensure!(
+            !path.is_dir(),
+            "{}: is a folder; name one scene, or see `microfacet-bake plan {}`",
+            path.display(),
+            shell(path)
+        );
         let scene = self.request.scene(path)?;
-        scene.warnings.iter().for_each(|warning| report("warning", warning));
+        scene.warnings.iter().for_each(warn);
         self.request.library(scene, self.max_error)
     }
 
     /// Refuses a set that could not be read back, before hours are spent on it.
-    fn check_bytes(&self, plan: &Plan) -> Result<(), Failure> {
+    fn check_bytes(&self, plan: &Plan) -> Result<()> {
         let Target::Quality(quality, precision) = self.target() else { return Ok(()) };
         let bytes = set_cost(plan, quality, precision)?.bytes as u64;
-        if bytes <= MAX_TABLES {
-            return Ok(());
-        }
-        Err(Failure(format!(
-            "the set would have about {} MiB, and at most {} MiB are read back: bake fewer materials \
-             in a set (--per-set), or with a lower quality or precision",
+        ensure!(
+            bytes <= MAX_TABLES,
+            "the set would have about {} MiB, and at most {} MiB are read back: bake fewer \
+             materials in a set (--per-set), or with a lower quality or precision",
             bytes >> 20,
             MAX_TABLES >> 20
-        )))
+        );
+        Ok(())
     }
 
     /// What a bake leaves if it is interrupted.
@@ -181,67 +170,65 @@ pub(super) fn cache(folder: Option<&Path>, none: bool) -> Cache {
     }
 }
 
-pub(super) fn run(args: Args) -> Outcome {
+/// Files that were written, as JSON.
+fn files(written: &[Written]) -> Value {
+    let file =
+        |file: &Written| json!({ "path": file.path.display().to_string(), "bytes": file.bytes });
+    written.iter().map(file).collect()
+}
+
+pub(super) fn run(args: &Args) -> Result<()> {
     let start = Instant::now();
     if let (Some(shard), Some(scene), Some(cache)) = (args.shard, &args.recipe, &args.cache) {
-        return shard::run(&args, shard, scene, cache);
+        return shard::run(args, shard, scene, cache);
     }
     let folder = args.out.as_deref().unwrap_or(Path::new(""));
-    if folder.as_os_str() == "-" {
-        return Err(Failure(
-            "--out -: a set is a folder of files and does not go to standard output; name a folder, \
-             such as --out tables (or --out ./- for one of that name)"
-                .into(),
-        ));
-    }
-    if args.split && args.format != FormatArg::Exr {
-        return Err(Failure("--split: only images are split; add --format exr".into()));
-    }
+    ensure!(
+        !is_stream(folder),
+        "--out -: a set is a folder of files and does not go to standard output; name a folder, \
+         such as --out tables (or --out ./- for one of that name)"
+    );
+    ensure!(
+        !args.split || args.format == Format::Exr,
+        "--split: only images are split; add --format exr"
+    );
     let out = match args.split {
         true => OutputFolder::open(folder)?,
         false => OutputFolder::open_for_set(folder)?,
     };
     let cache = cache(args.cache.as_deref(), args.no_cache);
     args.say_what_is_left(folder, &out, &cache);
-    let mut library = match args.recipe.as_deref() {
+    let library = match args.recipe.as_deref() {
         Some(path) => args.library(path)?,
         None => Library {
             parts: vec![Part { scene: Scene::default(), plan: args.request.general_plan() }],
         },
     };
     if let Some(scene) = &args.recipe {
-        shard::check(&args, &library, scene, &cache)?;
+        shard::check(args, &library, scene, &cache)?;
     }
-    let Part { scene, plan } = match library.parts.pop() {
-        Some(only) if library.parts.is_empty() => only,
-        last => {
-            library.parts.extend(last);
-            sets::run(&args, &library, out, cache, start)?;
-            remind(library.plans());
-            return Ok(Done::Ok);
-        }
+    let [Part { scene, plan }] = &library.parts[..] else {
+        sets::run(args, &library, out, cache, start)?;
+        remind(library.plans());
+        return Ok(());
     };
-    let outline = Outline::new(&scene, &plan, args.request.quality(), args.request.precision())?;
-    args.check_bytes(&plan)?;
+    let outline = Outline::new(scene, plan, args.request.quality(), args.request.precision())?;
+    args.check_bytes(plan)?;
     let settings = args.settings(cache);
     let bar = progress::show(&settings.progress, "baking");
-    let result = bake_with(&plan, args.target(), settings)?;
+    let result = bake_with(plan, args.target(), settings)?;
     drop(bar);
     warn_of_cache(&result);
-    let format = match args.format {
-        FormatArg::Safetensors => Format::Safetensors,
-        FormatArg::Exr => Format::Exr,
-    };
     let written = match args.split && !result.set.tables().is_empty() {
         true => out.write_images(&result.set)?,
-        false => out.write(&result.set, format)?,
+        false => out.write(&result.set, args.format)?,
     };
     let summary = Summary {
         outline,
         result: &result,
         written: &written,
         out: folder,
-        exr: format == Format::Exr,
+        exr: args.format == Format::Exr,
         split: args.split,
         seconds: start.elapsed().as_secs_f64(),
     };
@@ -250,14 +237,14 @@ pub(super) fn run(args: Args) -> Outcome {
     } else {
         summarize(&summary.text())?
     }
-    remind([(&scene, &plan)].into_iter());
-    Ok(Done::Ok)
+    remind(library.plans());
+    Ok(())
 }
 
 /// Says if what was baked could not be kept.
 fn warn_of_cache(baked: &Baked) {
     if let Some(why) = &baked.cache_error {
         let fix = "name a folder with --cache, or use --no-cache";
-        report("warning", format!("finished tables are not kept: {why}; {fix}"));
+        warn(format!("finished tables are not kept: {why}; {fix}"));
     }
 }

@@ -1,12 +1,10 @@
 //! `bsdf`: tests complete BSDFs, as renderers call them.
 
-use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use clap::ValueEnum;
 use serde_json::{Value, json};
 
-use microfacet_baker::progress::Meter;
 use microfacet_baker::table_set::Settings;
 use microfacet_baker::table_spec::Quality;
 use microfacet_sampler::{Masking, Tables};
@@ -18,7 +16,8 @@ use microfacet_validate::furnace::TOLERANCE as FURNACE_TOLERANCE;
 use microfacet_validate::{LEVEL, Options};
 
 use super::bake::cache;
-use super::{Failure, Outcome, print_json, progress, summarize, values, verdict};
+use super::values::{self, number};
+use super::{Done, Outcome, Result, print_json, progress, summarize, verdict, watched};
 
 /// Test complete BSDFs: their samples by chi-square, white furnaces, and reciprocity.
 ///
@@ -50,16 +49,16 @@ pub(super) struct Args {
     seed: u64,
     /// Multiply the gamma of the lobes that are drawn from by this; 1.05 shows that the tests
     /// reject.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = values::number(FACTORS, "1 leaves gamma as it is"))]
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = values::factor)]
     perturb_gamma: f64,
     /// Shapes of the furnaces, comma separated, with each of --eta; by default seven pairs.
     #[arg(long, value_name = "G,...", value_delimiter = ',', value_parser = values::gamma, requires = "eta")]
     gamma: Vec<f64>,
     /// Indices of refraction of the furnaces, inside over outside, comma separated.
-    #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = values::number(ETAS, "1.5 is glass in air"), requires = "gamma")]
+    #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = number(|eta| (0.1..=10.0).contains(eta), "a number in [0.1, 10]; 1.5 is glass in air"), requires = "gamma")]
     eta: Vec<f64>,
     /// Form of masking of the furnaces.
-    #[arg(long, value_parser = super::furnace::parse_masking(), default_value = Masking::HeightCorrelated.name())]
+    #[arg(long, value_parser = values::masking(), default_value = Masking::HeightCorrelated.name())]
     masking: Masking,
     /// Folder of finished tables.
     #[arg(long, value_name = "FOLDER")]
@@ -82,8 +81,6 @@ enum Test {
     Reciprocity,
 }
 
-const FACTORS: RangeInclusive<f64> = 0.5..=2.0;
-const ETAS: RangeInclusive<f64> = 0.1..=10.0;
 /// Lights of a furnace's samples, and pairs of directions of each BSDF.
 const FURNACE_SAMPLES: usize = 100_000;
 const PAIRS_OF_DIRECTIONS: usize = 10_000;
@@ -97,26 +94,24 @@ impl Args {
     fn bake(
         &self,
         of: impl FnOnce(Settings) -> Result<Tables, specimen::Unmade>,
-    ) -> Result<Tables, Failure> {
+    ) -> Result<Tables> {
         let cache = cache(self.cache.as_deref(), self.no_cache);
         let settings = Settings { cache, ..Settings::default() };
-        let bar = progress::show(&settings.progress, "baking albedos of dielectrics");
-        let set = of(settings)?;
-        drop(bar);
-        Ok(set)
+        let _bar = progress::show(&settings.progress, "baking albedos of dielectrics");
+        Ok(of(settings)?)
     }
 }
 
 /// The text of a test, its JSON, and whether it passed.
 struct Judged(String, Value, bool);
 
-pub(super) fn run(args: Args) -> Outcome {
-    args.gamma.iter().try_for_each(|&gamma| values::tabulated(gamma, ""))?;
-    let mut document = serde_json::Map::new();
+pub(super) fn run(args: &Args) -> Outcome {
+    values::tabulated(&args.gamma, "")?;
+    let mut document = json!({});
     let mut passed = true;
     let mut add = |name: &str, Judged(text, value, sound): Judged| {
         passed &= sound;
-        document.insert(name.into(), value);
+        document[name] = value;
         if args.json { Ok(()) } else { summarize(&text) }
     };
     let (chi, pairs) = (args.runs(Test::ChiSquare), args.runs(Test::Reciprocity));
@@ -129,31 +124,29 @@ pub(super) fn run(args: Args) -> Outcome {
         // Densities do not depend on how accurate the albedos are.
         let set = args.bake(|settings| specimen::tables(&specimens, Quality::Draft, settings))?;
         if chi {
-            add("chi_square", judge_samples(&args, &set, &all)?)?;
+            add("chi_square", judge_samples(args, &set, &all)?)?;
         }
         if pairs {
             add("reciprocity", judge_exchange(&set, &all)?)?;
         }
     }
     if args.runs(Test::Furnace) {
-        add("furnace", judge_furnaces(&args)?)?;
+        add("furnace", judge_furnaces(args)?)?;
     }
-    if args.json {
-        document.insert("passed".into(), passed.into());
-        print_json(&document.into())?;
-        return Ok(super::Done::judged(passed));
+    if !args.json {
+        return verdict(passed);
     }
-    verdict(passed)
+    document["passed"] = passed.into();
+    print_json(&document)?;
+    Ok(Done::judged(passed))
 }
 
-fn judge_samples(args: &Args, set: &Tables, all: &[Configuration]) -> Result<Judged, Failure> {
+fn judge_samples(args: &Args, set: &Tables, all: &[Configuration]) -> Result<Judged> {
     let options = Options { samples: args.samples, gamma_factor: args.perturb_gamma };
-    let meter = Meter::default();
     let work = chi_square::seconds(all.len(), options);
-    meter.expect(work);
-    let bar = progress::show(&meter, "drawing samples");
-    let result = chi_square::run(set, all, options, &meter.stage(work))?;
-    drop(bar);
+    let result = watched("drawing samples", work, |meter| {
+        chi_square::run(set, all, options, &meter.stage(work))
+    })?;
     let smallest = result.reports.first().map_or(1.0, |report| report.test.p);
     let mut text = format!(
         "chi-square: {} configurations x {} samples; a test rejects below p = {:.3e}\n\
@@ -179,7 +172,7 @@ fn judge_samples(args: &Args, set: &Tables, all: &[Configuration]) -> Result<Jud
     Ok(Judged(text, value, result.passed()))
 }
 
-fn judge_exchange(set: &Tables, all: &[Configuration]) -> Result<Judged, Failure> {
+fn judge_exchange(set: &Tables, all: &[Configuration]) -> Result<Judged> {
     let result = reciprocity::run(set, all, PAIRS_OF_DIRECTIONS)?;
     let [reflected, transmitted] = result.pairs;
     let mut text = format!(
@@ -201,18 +194,16 @@ fn judge_exchange(set: &Tables, all: &[Configuration]) -> Result<Judged, Failure
     Ok(Judged(text, value, result.passed()))
 }
 
-fn judge_furnaces(args: &Args) -> Result<Judged, Failure> {
+fn judge_furnaces(args: &Args) -> Result<Judged> {
     let product = args.gamma.iter().flat_map(|&g| args.eta.iter().map(move |&eta| [g, eta]));
     let named: Vec<[f64; 2]> = product.collect();
     let pairs = if named.is_empty() { &PAIRS[..] } else { &named[..] };
     let set = args.bake(|settings| furnace::tables(pairs, args.masking, settings))?;
     let rows = furnace::rows(pairs, args.masking);
-    let meter = Meter::default();
     let work = furnace::seconds(rows.len(), FURNACE_SAMPLES);
-    meter.expect(work);
-    let bar = progress::show(&meter, "in the furnace");
-    let rows = furnace::run(&set, &rows, FURNACE_SAMPLES, args.seed, &meter.stage(work))?;
-    drop(bar);
+    let rows = watched("in the furnace", work, |meter| {
+        furnace::run(&set, &rows, FURNACE_SAMPLES, args.seed, &meter.stage(work))
+    })?;
     let mut text = format!(
         "white furnace, {}, Kulla-Conty; 1 +- {FURNACE_TOLERANCE:e} allowed\n",
         args.masking

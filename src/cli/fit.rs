@@ -3,18 +3,18 @@
 mod merl;
 
 use std::f64::consts::FRAC_PI_2;
-use std::fmt::{Display, Write};
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use microfacet_baker::input::angles::Angles;
 use microfacet_baker::input::normals::read_csv;
 use microfacet_baker::input::{MAX_TEXT, open_or_stdin, shown};
-use microfacet_baker::progress::Meter;
+use microfacet_fit::convert::Form;
 
-use super::convert::{On, ends};
-use super::values::Unit;
+use super::convert::{FORMS, ends};
+use super::values::{Unit, named};
 use super::words::number;
-use super::{Done, Failure, Outcome, print, progress, remedy};
+use super::{Context, Result, bail, print, watched};
 
 /// Fit a Student-t to a measured distribution of normals, or to measured materials.
 ///
@@ -35,8 +35,8 @@ pub(super) struct Args {
     #[command(flatten)]
     unit: Unit,
     /// Quantity whose error the fit minimises.
-    #[arg(long, default_value = "relative")]
-    on: On,
+    #[arg(long, value_parser = named(&FORMS), default_value = "relative")]
+    on: Form,
     /// Files of the MERL database, each fitted by itself.
     #[arg(
         long,
@@ -51,28 +51,24 @@ pub(super) struct Args {
     recipe: Option<PathBuf>,
 }
 
-pub(super) fn run(args: Args) -> Outcome {
+pub(super) fn run(args: &Args) -> Result<()> {
     match &args.input {
-        Some(input) => normals(input, &args),
-        None if args.merl.is_empty() => Err(Failure(
-            "give --input with a CSV, or --merl with files of the MERL database".into(),
-        )),
+        Some(input) => {
+            let text = normals(input, args).with_context(|| shown(input).to_string())?;
+            print(&text)
+        }
+        None if args.merl.is_empty() => {
+            bail!("give --input with a CSV, or --merl with files of the MERL database")
+        }
         None => merl::run(&args.merl, args.recipe.as_deref()),
     }
 }
 
 /// Fits to a distribution of normals.
-fn normals(input: &Path, args: &Args) -> Outcome {
-    let path = shown(input);
-    let failed = |why: &dyn Display| Failure(format!("{path}: {why}"));
+fn normals(input: &Path, args: &Args) -> Result<String> {
     let angles = args.unit.angles();
-    let file = open_or_stdin(input, MAX_TEXT).map_err(|why| failed(&why))?;
-    let measured = read_csv(file, angles).map_err(|why| failed(&remedy::told(&why)))?;
-    let meter = Meter::default();
-    let bar = progress::show(&meter, "fitting");
-    let found =
-        microfacet_fit::fit(&measured, args.on.into(), &meter).map_err(|why| failed(&why))?;
-    drop(bar);
+    let measured = read_csv(open_or_stdin(input, MAX_TEXT)?, angles)?;
+    let found = watched("fitting", 0.0, |meter| microfacet_fit::fit(&measured, args.on, meter))?;
     let mut text = String::new();
     let (first, last) = measured.assumed();
     if first > 0.0 {
@@ -85,17 +81,11 @@ fn normals(input: &Path, args: &Args) -> Outcome {
     }
     writeln!(text, "{:<44}{:>14}{:>16}", "fit", "RMSE of D/D(0)", "RMSE of D, 1/sr")?;
     for found in [&found.student_t, &found.beckmann, &found.ggx] {
-        writeln!(
-            text,
-            "{:<44}{:>14.4e}{:>16.4e}{}",
-            found.to.to_string(),
-            found.rmse[0],
-            found.rmse[1],
-            ends(&found.ends_at)
-        )?;
+        let ([relative, density], to) = (found.rmse, found.to.to_string());
+        let ends = ends(&found.ends_at);
+        writeln!(text, "{to:<44}{relative:>14.4e}{density:>16.4e}{ends}")?;
     }
-    print(&text)?;
-    Ok(Done::Ok)
+    Ok(text)
 }
 
 /// An angle in radians, however small, in the unit of the input.
@@ -109,13 +99,9 @@ mod tests {
 
     #[test]
     fn angles_keep_their_digits_and_their_unit() {
-        for (degrees, shown) in [
-            (89.9, "89.9 degrees"),
-            (0.25, "0.25 degrees"),
-            (1e-5, "1e-5 degrees"),
-            (10.0, "10 degrees"),
-        ] {
-            assert_eq!(angle(f64::to_radians(degrees), Angles::Degrees), shown);
+        for degrees in ["89.9", "0.25", "1e-5", "10"] {
+            let radians = degrees.parse::<f64>().unwrap().to_radians();
+            assert_eq!(angle(radians, Angles::Degrees), format!("{degrees} degrees"));
         }
         assert_eq!(angle(1.0 / 3.0, Angles::Radians), "0.3333333 radians");
     }

@@ -4,16 +4,16 @@ mod grid;
 
 use std::path::PathBuf;
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
-use serde_json::json;
+use serde_json::{Value, json};
 
-use microfacet_baker::progress::Meter;
 use microfacet_sampler::{Masking, Tables};
 use microfacet_validate::furnace::{
     Furnace, TOLERANCE, Walk, furnace, seconds, walk, walk_seconds,
 };
 
-use super::{Done, Outcome, print, print_json, progress, summarize, tables, values};
+use super::values::{self, number};
+use super::words::distinct;
+use super::{Done, Outcome, Result, print, print_json, summarize, tables, watched};
 
 /// Run a white furnace: single scattering, each compensation, and the random walk on the
 /// microsurface.
@@ -30,19 +30,17 @@ pub(super) struct Args {
     tables: Option<PathBuf>,
     /// Roughnesses, comma separated: 0, a mirror, or in [1e-8, 3]; by default those of 0.01, 0.1,
     /// 0.3, 0.6, 1, 2 and 3 that the tables cover.
-    #[arg(long, value_name = "X,...", value_delimiter = ',', value_parser = parse_roughness)]
+    #[arg(long, value_name = "X,...", value_delimiter = ',', value_parser = number(|&sigma| sigma >= 0.0, "0, a mirror, or a number in [1e-8, 3]"))]
     sigma: Vec<f64>,
     /// Shapes in [1.501, inf], comma separated; by default those of 1.501, 1.6, 2, 3, 5, 10, 40 and
     /// inf that the tables cover.
     #[arg(long, value_name = "G,...", value_delimiter = ',', value_parser = values::gamma)]
     gamma: Vec<f64>,
     /// Cosines of the view in [0, 1], comma separated.
-    #[arg(long, value_name = "C,...", value_delimiter = ',', value_parser = values::number(0.0..=1.0, "0 is grazing"), default_value = "0.02,0.3,1")]
+    #[arg(long, value_name = "C,...", value_delimiter = ',', value_parser = number(|cos| (0.0..=1.0).contains(cos), "a number in [0, 1]; 0 is grazing"), default_value = "0.02,0.3,1")]
     cos_theta: Vec<f64>,
-    #[command(flatten)]
-    others: values::OtherNames,
     /// Form of masking: G1(v) G1(l) or 1/(1 + lambda(v) + lambda(l)); a walk is height-correlated.
-    #[arg(long, value_parser = parse_masking(), default_value = Masking::HeightCorrelated.name())]
+    #[arg(long, value_parser = values::masking(), default_value = Masking::HeightCorrelated.name())]
     masking: Masking,
     /// Add the random walk (Heitz et al. 2016) with N rays a row, such as 1e5.
     #[arg(long, value_name = "N", value_parser = values::count::<usize>(1_000..=10_000_000_000))]
@@ -58,69 +56,49 @@ pub(super) struct Args {
     json: bool,
 }
 
-/// The forms of masking by name.
-pub(super) fn parse_masking() -> impl TypedValueParser<Value = Masking> {
-    PossibleValuesParser::new(Masking::ALL.map(Masking::name))
-        .try_map(|name| name.parse::<Masking>())
-}
-
-fn parse_roughness(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        // The set says whether it holds it.
-        Ok(sigma) if sigma >= 0.0 => Ok(sigma),
-        _ => Err(format!("sigma \"{text}\" must be 0, a mirror, or a number in [1e-8, 3]")),
-    }
-}
-
-pub(super) fn run(args: Args) -> Outcome {
+pub(super) fn run(args: &Args) -> Outcome {
     let set = tables(args.tables.as_deref())?;
-    args.gamma.iter().try_for_each(|&gamma| values::tabulated(gamma, ""))?;
-    let materials = grid::materials(&set, args.masking, &args.sigma, &args.gamma)?;
-    if args.average {
-        return average(&materials, &set, args.masking);
-    }
+    values::tabulated(&args.gamma, "")?;
     let masking = args.masking;
-    let mut rows = Vec::new();
-    let mut failures = String::new();
+    let materials = grid::materials(&set, masking, &args.sigma, &args.gamma)?;
+    if args.average {
+        print(&average(&materials, &set, masking)?)?;
+        return Ok(Done::Ok);
+    }
     if !args.json {
         print(&head(args.walks.is_some()))?;
     }
-    let work = |sigma: f64, gamma: f64| {
-        // A mirror has no microsurface to walk on.
-        let walks = args.walks.filter(|_| sigma > 0.0);
-        (walks, [seconds(1), walk_seconds(sigma, gamma, walks.unwrap_or(0))])
-    };
-    let meter = Meter::default();
-    for &(sigma, gamma) in &materials {
-        let (_, [row, walk]) = work(sigma, gamma);
-        meter.expect(args.cos_theta.len() as f64 * (row + walk));
-    }
-    let bar = progress::show(&meter, "in the furnace");
-    for &(sigma, gamma) in &materials {
-        let (walks, [row_seconds, walk_seconds]) = work(sigma, gamma);
-        for &cos in &args.cos_theta {
-            let stage = meter.stage(row_seconds);
-            let row = furnace(&set, masking, sigma, gamma, cos)?;
-            drop(stage);
-            let stage = meter.stage(walk_seconds);
-            let walked =
-                walks.map(|walks| walk(sigma, gamma, cos, walks, args.seed, &stage)).transpose()?;
-            drop(stage);
-            let why = deviations(&row, walked.as_ref(), masking);
-            if args.json {
-                rows.push(as_json(&row, walked, &why));
-            } else {
-                print(&line(&row, walked))?;
-            }
-            for why in why {
-                failures += &format!("  gamma {gamma}, sigma {sigma}, cos_theta {cos}: {why}\n");
+    // A mirror has no microsurface to walk on.
+    let walks = |sigma: f64| args.walks.filter(|_| sigma > 0.0);
+    let of_row = |sigma, gamma| seconds(1) + walk_seconds(sigma, gamma, walks(sigma).unwrap_or(0));
+    let of_views: f64 = materials.iter().map(|&(sigma, gamma)| of_row(sigma, gamma)).sum();
+    let work = of_views * args.cos_theta.len() as f64;
+    let mut rows = Vec::new();
+    let mut failures = String::new();
+    watched("in the furnace", work, |meter| -> Result<()> {
+        for &(sigma, gamma) in &materials {
+            for &cos in &args.cos_theta {
+                let stage = meter.stage(of_row(sigma, gamma));
+                let row = furnace(&set, masking, sigma, gamma, cos)?;
+                let walked = |walks| walk(sigma, gamma, cos, walks, args.seed, &stage);
+                let walked = walks(sigma).map(walked).transpose()?;
+                let why = deviations(&row, walked.as_ref(), masking);
+                if args.json {
+                    rows.push(as_json(&row, walked, &why));
+                } else {
+                    print(&line(&row, walked))?;
+                }
+                for why in why {
+                    let at = format!("gamma {gamma}, sigma {sigma}, cos_theta {cos}");
+                    failures += &format!("  {at}: {why}\n");
+                }
             }
         }
-    }
-    drop(bar);
+        Ok(())
+    })?;
     let passed = failures.is_empty();
     if args.json {
-        print_json(&json!({ "masking": Masking::name(masking), "passed": passed, "rows": rows }))?;
+        print_json(&json!({ "masking": masking.name(), "passed": passed, "rows": rows }))?;
     } else if passed {
         summarize("The furnace closes.\n")?;
     } else {
@@ -179,7 +157,7 @@ fn line(row: &Furnace, walk: Option<Walk>) -> String {
     )
 }
 
-fn as_json(row: &Furnace, walk: Option<Walk>, deviations: &[String]) -> serde_json::Value {
+fn as_json(row: &Furnace, walk: Option<Walk>, deviations: &[String]) -> Value {
     let walk = walk.map(|walk| {
         json!({
             "single": walk.single.mean, "single_error": walk.single.error,
@@ -195,20 +173,12 @@ fn as_json(row: &Furnace, walk: Option<Walk>, deviations: &[String]) -> serde_js
 
 /// The average albedo, γ down and σ across: the quantity that figure 9 of Ribardière et al. 2017
 /// shows as spheres. A dash stands where the set covers no such pair.
-fn average(materials: &[(f64, f64)], set: &Tables, masking: Masking) -> Outcome {
-    let (mut sigmas, mut gammas) = (Vec::new(), Vec::new());
-    for (sigma, gamma) in materials {
-        if !sigmas.contains(sigma) {
-            sigmas.push(*sigma);
-        }
-        if !gammas.contains(gamma) {
-            gammas.push(*gamma);
-        }
-    }
+fn average(materials: &[(f64, f64)], set: &Tables, masking: Masking) -> Result<String> {
+    let sigmas = distinct(materials.iter().map(|material| material.0));
     let mut text = String::from("| gamma |");
     sigmas.iter().for_each(|sigma| text += &format!(" sigma = {sigma} |"));
     text += &format!("\n| --- |{}\n", " --- |".repeat(sigmas.len()));
-    for &gamma in &gammas {
+    for gamma in distinct(materials.iter().map(|material| material.1)) {
         text += &format!("| {gamma} |");
         for &sigma in &sigmas {
             text += &match materials.contains(&(sigma, gamma)) {
@@ -218,6 +188,5 @@ fn average(materials: &[(f64, f64)], set: &Tables, masking: Masking) -> Outcome 
         }
         text += "\n";
     }
-    print(&text)?;
-    Ok(Done::Ok)
+    Ok(text)
 }

@@ -9,7 +9,7 @@ mod fit;
 mod furnace;
 mod inspect;
 mod interrupt;
-mod negative;
+mod parser;
 mod plan;
 mod plot;
 mod progress;
@@ -28,7 +28,6 @@ mod values;
 mod view;
 mod words;
 
-use std::any::Any;
 use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
@@ -37,9 +36,11 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use anstyle::{AnsiColor, Style};
-use clap::{Parser, Subcommand};
+use anyhow::{Context, Error as Failure, Result, anyhow, bail, ensure};
+use clap::{FromArgMatches, Parser, Subcommand};
 use rayon::ThreadPoolBuilder;
 
+use microfacet_baker::progress::Meter;
 use microfacet_baker::store;
 use microfacet_sampler::Tables;
 
@@ -107,20 +108,12 @@ impl Done {
     }
 }
 
-/// A message for the user; exit status 2.
-#[derive(Debug)]
-struct Failure(String);
-
-impl<E: Display + Any> From<E> for Failure {
-    fn from(error: E) -> Self {
-        Self(remedy::told(&error))
-    }
-}
-
-type Outcome = Result<Done, Failure>;
+/// An error has exit status 2.
+type Outcome = Result<Done>;
 
 pub(crate) fn main() -> ExitCode {
-    let cli = match Cli::try_parse_from(negative::attached(std::env::args_os())) {
+    let parsed = parser::command().try_get_matches();
+    let cli = match parsed.and_then(|found| Cli::from_arg_matches(&found)) {
         Ok(cli) => cli,
         Err(why) => return refuse(&why),
     };
@@ -129,9 +122,9 @@ pub(crate) fn main() -> ExitCode {
     match among_threads(cli.threads, cli.command) {
         Ok(Done::Ok) => ExitCode::SUCCESS,
         Ok(Done::Rejected) => ExitCode::from(1),
-        Err(Failure(message)) => {
+        Err(why) => {
             // Further lines are indented, so that none of them passes for a message of ours.
-            say("error", &escape::lines(&message).replace('\n', "\n    "));
+            say("error", &escape::lines(&remedy::told(&why)).replace('\n', "\n    "));
             ExitCode::from(2)
         }
     }
@@ -147,13 +140,10 @@ fn among_threads(threads: Option<usize>, command: Command) -> Outcome {
     match ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build() {
         Ok(pool) => pool.install(|| run(command)),
         Err(why) => {
-            report(
-                "warning",
-                format!(
-                    "threads cannot be started ({why}): all work is done by one; ask for fewer with \
-                     --threads, or raise the limit on processes or memory"
-                ),
-            );
+            warn(format!(
+                "threads cannot be started ({why}): all work is done by one; ask for fewer with \
+                 --threads, or raise the limit on processes or memory"
+            ));
             let _pool = ThreadPoolBuilder::new().num_threads(1).use_current_thread().build()?;
             run(command)
         }
@@ -162,23 +152,24 @@ fn among_threads(threads: Option<usize>, command: Command) -> Outcome {
 
 fn run(command: Command) -> Outcome {
     match command {
-        Command::Recipe(args) => recipe::run(args),
-        Command::Bake(args) => bake::run(args),
-        Command::Plan(args) => plan::run(args),
-        Command::Validate(args) => validate::run(args),
-        Command::Furnace(args) => furnace::run(args),
-        Command::Bsdf(args) => bsdf::run(args),
-        Command::Inspect(args) => inspect::run(args),
-        Command::Report(args) => report::run(args),
-        Command::Query(args) => query::run(args),
-        Command::Sample(args) => sample::run(args),
-        Command::Convert(args) => convert::run(args),
-        Command::Export(args) => export::run(args),
-        Command::Fit(args) => fit::run(args),
-        Command::Plot(args) => plot::run(args),
-        Command::Completions(args) => shell::completions(args),
-        Command::Man(args) => shell::man(args),
+        Command::Plan(args) => return plan::run(args),
+        Command::Validate(args) => return validate::run(&args),
+        Command::Furnace(args) => return furnace::run(&args),
+        Command::Bsdf(args) => return bsdf::run(&args),
+        Command::Recipe(args) => recipe::run(args)?,
+        Command::Bake(args) => bake::run(&args)?,
+        Command::Inspect(args) => inspect::run(&args)?,
+        Command::Report(args) => report::run(&args)?,
+        Command::Query(args) => query::run(&args)?,
+        Command::Sample(args) => sample::run(&args)?,
+        Command::Convert(args) => convert::run(&args)?,
+        Command::Export(args) => export::run(args)?,
+        Command::Fit(args) => fit::run(&args)?,
+        Command::Plot(args) => plot::run(&args)?,
+        Command::Completions(args) => shell::completions(&args)?,
+        Command::Man(args) => shell::man(&args)?,
     }
+    Ok(Done::Ok)
 }
 
 /// Prints help, or why the arguments are refused, and returns the exit status.
@@ -211,6 +202,14 @@ fn report(kind: &str, message: impl Display) {
     }
 }
 
+fn note(message: impl Display) {
+    report("note", message);
+}
+
+fn warn(message: impl Display) {
+    report("warning", message);
+}
+
 /// Writes to standard error; where that fails, nothing is left to say it to.
 fn say(kind: &str, text: &str) {
     progress::above(|| {
@@ -237,8 +236,16 @@ fn coloured(word: &str, colour: AnsiColor, stream: &impl anstream::stream::RawSt
     }
 }
 
-/// Writes a text for people that `--quiet` leaves out.
-fn summarize(text: &str) -> Result<(), Failure> {
+/// Does work of so many seconds, about, with a bar.
+fn watched<T>(what: &'static str, seconds: f64, work: impl FnOnce(&Meter) -> T) -> T {
+    let meter = Meter::default();
+    meter.expect(seconds);
+    let _bar = progress::show(&meter, what);
+    work(&meter)
+}
+
+/// Writes a text that `--quiet` leaves out.
+fn summarize(text: &str) -> Result<()> {
     if is_quiet() { Ok(()) } else { print(text) }
 }
 
@@ -251,58 +258,59 @@ fn verdict(passed: bool) -> Outcome {
     Ok(Done::judged(passed))
 }
 
-/// Writes a text for people to standard output.
-fn print(text: &str) -> Result<(), Failure> {
+/// Writes a text to standard output.
+fn print(text: &str) -> Result<()> {
     write(escape::lines(text).as_bytes())
 }
 
 /// Writes to standard output; a reader that has closed the pipe (`| head`) is no error.
-fn write(bytes: &[u8]) -> Result<(), Failure> {
+fn write(bytes: &[u8]) -> Result<()> {
     write_on(bytes).map(|_| ())
 }
 
 /// Writes to standard output as a whole, and returns whether there is still a reader.
-fn write_on(bytes: &[u8]) -> Result<bool, Failure> {
+fn write_on(bytes: &[u8]) -> Result<bool> {
     let mut out = io::stdout();
     // Flushed, since an error that waits for the end of the process is lost.
     let mut all = || out.write_all(bytes).and_then(|()| out.flush());
     // Elsewhere nothing is in the way, and a reader may keep the writer waiting.
     match if io::stdout().is_terminal() { progress::above(all) } else { all() } {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(false),
-        Err(error) => Err(Failure(format!("standard output: {error}"))),
-        Ok(()) => Ok(true),
+        result => result.context("standard output").map(|()| true),
     }
 }
 
 /// Writes a file that a user names.
-fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    store::replace(path, bytes).map_err(|why| unwritable(path, &why))
+fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
+    store::replace(path, bytes).map_err(|why| unwritable(path, why))
 }
 
 /// Why a file cannot be written, with its path.
-fn unwritable(path: &Path, why: &io::Error) -> Failure {
+fn unwritable(path: &Path, why: io::Error) -> Failure {
     let hint = match why.kind() {
         io::ErrorKind::InvalidInput => ", or `--out -` for standard output",
         _ => "",
     };
-    Failure(format!("{}: {why}{hint}", path.display()))
+    anyhow!("{}: {why}{hint}", path.display())
 }
 
 /// Prints a value as JSON.
-fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
+fn print_json(value: &serde_json::Value) -> Result<()> {
     write(escape::json(&format!("{value:#}\n")).as_bytes())
 }
 
+/// Whether an option names standard output or input.
+fn is_stream(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
 /// The tables at a path, or the embedded default.
-fn tables(path: Option<&Path>) -> Result<Tables, Failure> {
-    Ok(match path {
-        Some(path) if !path.try_exists().unwrap_or(true) => {
-            return Err(Failure(format!(
-                "{}: no such file or folder; name what `microfacet-bake bake` wrote",
-                path.display()
-            )));
-        }
-        Some(path) => store::read(path)?,
-        None => Tables::embedded(),
-    })
+fn tables(path: Option<&Path>) -> Result<Tables> {
+    let Some(path) = path else { return Ok(Tables::embedded()) };
+    ensure!(
+        path.try_exists().unwrap_or(true),
+        "{}: no such file or folder; name what `microfacet-bake bake` wrote",
+        path.display()
+    );
+    Ok(store::read(path)?)
 }

@@ -1,13 +1,13 @@
 //! `plot`: draws figures of the literature as SVG or PNG.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser};
 
 use microfacet_report::plot;
 use microfacet_report::plot::FIGURES;
 
-use super::{Done, Failure, Outcome, print, write_file};
+use super::{Result, bail, is_stream, print, write_file};
 
 /// Draw a figure of the literature as SVG or PNG.
 #[derive(clap::Args)]
@@ -26,37 +26,21 @@ fn figures() -> PossibleValuesParser {
     FIGURES.map(|listed| PossibleValue::new(listed.name).help(listed.about)).into()
 }
 
-pub(super) fn run(args: Args) -> Outcome {
-    let out = args.out.filter(|path| path.as_os_str() != "-");
-    // A name that cannot be written is refused before anything is computed.
-    let format = out.as_deref().map(format).transpose()?;
-    let drawing = plot::figure(&args.name)?.drawing();
-    match out.zip(format) {
-        Some((path, Format::Svg)) => write_file(&path, drawing.svg().as_bytes())?,
-        Some((path, Format::Png)) => write_file(&path, &drawing.png()?)?,
-        None => print(&drawing.svg())?,
-    }
-    Ok(Done::Ok)
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
-    Svg,
-    Png,
-}
-
-/// The format that a name ends in, in letters of either case.
-fn format(path: &Path) -> Result<Format, Failure> {
-    let ending = path.extension().unwrap_or_default();
-    if ending.eq_ignore_ascii_case("svg") {
-        Ok(Format::Svg)
-    } else if ending.eq_ignore_ascii_case("png") {
-        Ok(Format::Png)
-    } else {
-        Err(Failure(format!(
+pub(super) fn run(args: &Args) -> Result<()> {
+    let Some(path) = args.out.as_deref().filter(|path| !is_stream(path)) else {
+        return print(&plot::figure(&args.name)?.drawing().svg());
+    };
+    // In letters of either case; a name that cannot be written is refused before anything is
+    // computed.
+    let ends_in = |ending| path.extension().is_some_and(|end| end.eq_ignore_ascii_case(ending));
+    let is_svg = ends_in("svg");
+    if !is_svg && !ends_in("png") {
+        bail!(
             "{}: a figure is written as SVG or PNG; give a name that ends in .svg or .png, or \
              `--out -` for SVG on standard output",
             path.display()
-        )))
+        );
     }
+    let figure = plot::figure(&args.name)?.drawing();
+    write_file(path, &if is_svg { figure.svg().into_bytes() } else { figure.png()? })
 }

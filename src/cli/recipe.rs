@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use microfacet_baker::store;
 
-use super::{Done, Failure, Outcome, print, summarize, unwritable, write_file};
+use super::{Result, ensure, is_stream, print, summarize, unwritable, write_file};
 
 /// Print a commented recipe to start from.
 #[derive(clap::Args)]
@@ -41,26 +41,20 @@ Instead of a number, sigma and gamma take a range: { min = A, max = B }.
 Example:
   microfacet-bake recipe --out mine.toml\n  microfacet-bake bake mine.toml --out tables";
 
-pub(super) fn run(args: Args) -> Outcome {
-    let Some(path) = args.out.filter(|path| path.as_os_str() != "-") else {
-        print(STARTER)?;
-        return Ok(Done::Ok);
-    };
-    let shown = path.display();
+pub(super) fn run(args: Args) -> Result<()> {
+    let Some(path) = args.out.filter(|path| !is_stream(path)) else { return print(STARTER) };
     check_new(&path)?;
     write_file(&path, STARTER.as_bytes())?;
-    summarize(&format!("{shown}\n"))?;
-    Ok(Done::Ok)
+    summarize(&format!("{}\n", path.display()))
 }
 
-/// Refuses a file that exists already, since what it holds may be somebody's work, and one that
-/// cannot be written.
-pub(super) fn check_new(path: &Path) -> Result<(), Failure> {
-    if path.symlink_metadata().is_err() {
-        return store::check_file(path).map_err(|why| unwritable(path, &why));
-    }
-    let shown = path.display();
-    Err(Failure(format!(
-        "{shown}: this exists already and is kept; name a new file, or remove it before"
-    )))
+/// Refuses a file that exists already, since what it holds may be work that is nowhere else, and one
+/// that cannot be written.
+pub(super) fn check_new(path: &Path) -> Result<()> {
+    ensure!(
+        path.symlink_metadata().is_err(),
+        "{}: this exists already and is kept; name a new file, or remove it before",
+        path.display()
+    );
+    store::check_file(path).map_err(|why| unwritable(path, why))
 }

@@ -1,8 +1,7 @@
 //! What helps against an error of a library, in the words of the command. The libraries say what is
 //! wrong, with numbers and what is allowed; only the command knows its options and its recipes.
 
-use std::any::Any;
-use std::fmt::Display;
+use anyhow::Error;
 
 use microfacet_baker::input::normals::MeasuredError;
 use microfacet_baker::memory::TooLarge;
@@ -13,46 +12,48 @@ use microfacet_fit::merl::MerlError;
 use microfacet_report::ReportError;
 use microfacet_sampler::{BindError, MaterialError};
 
-/// An error, and what helps.
-pub(super) fn told<E: Display + Any>(error: &E) -> String {
-    format!("{error}{}", of(error).unwrap_or_default())
+/// An error with what it is an error of, and what helps.
+pub(super) fn told(error: &Error) -> String {
+    let mut text = String::new();
+    for cause in error.chain().map(ToString::to_string) {
+        // The message of a library's error has its cause already.
+        if text.is_empty() {
+            text = cause;
+        } else if !text.contains(&cause) {
+            text += &format!(": {cause}");
+        }
+    }
+    text + &of(error).unwrap_or_default()
 }
 
 /// What follows the message of an error, if anything.
-fn of(error: &dyn Any) -> Option<String> {
-    let option = |name: &str| Some(format!(" ({name})"));
-    if error.is::<TooLarge>() {
-        return option("--max-memory");
-    }
-    if let Some(why) = error.downcast_ref::<BakeError>() {
-        return match why {
-            BakeError::Memory(why) => of(why),
-            BakeError::TooSlow { .. } => option("--patient"),
-            _ => None,
+fn of(error: &Error) -> Option<String> {
+    let fixed = if let Some(why) = error.downcast_ref() {
+        match why {
+            BakeError::Memory(_) => " (--max-memory)",
+            BakeError::TooSlow { .. } => " (--patient)",
+            _ => return None,
+        }
+    } else if error.is::<TooLarge>() {
+        " (--max-memory)"
+    } else if let Some(StoreError::TooLarge(..)) = error.downcast_ref() {
+        " (--per-set)"
+    } else if let Some(MeasuredError::Degrees(_)) = error.downcast_ref() {
+        " (--degrees)"
+    } else if let Some(ConvertError::ShapeNeeded(_)) = error.downcast_ref() {
+        " (--shape)"
+    } else if let Some(MerlError::Dimensions(_)) = error.downcast_ref() {
+        "; --input reads a CSV of angles and D"
+    } else if let Some(ReportError::OtherSet { .. }) = error.downcast_ref() {
+        ": what `microfacet-bake validate SET --json` prints"
+    } else {
+        return match error.downcast_ref() {
+            Some(BindError::Material(why)) => of_material(why),
+            Some(why) => why.recipe().map(|recipe| format!("; add to a recipe:\n{recipe}")),
+            None => error.downcast_ref().and_then(of_material),
         };
-    }
-    if let Some(StoreError::TooLarge(..)) = error.downcast_ref() {
-        return option("--per-set");
-    }
-    if let Some(MeasuredError::Degrees(_)) = error.downcast_ref() {
-        return option("--degrees");
-    }
-    if let Some(ConvertError::ShapeNeeded(_)) = error.downcast_ref() {
-        return option("--shape");
-    }
-    if let Some(MerlError::Dimensions(_)) = error.downcast_ref() {
-        return Some("; --input reads a CSV of angles and D".into());
-    }
-    if let Some(ReportError::OtherSet { .. }) = error.downcast_ref() {
-        return Some(": what `microfacet-bake validate SET --json` prints".into());
-    }
-    if let Some(why) = error.downcast_ref::<BindError>() {
-        return match why {
-            BindError::Material(why) => of_material(why),
-            why => why.recipe().map(|recipe| format!("; add to a recipe:\n{recipe}")),
-        };
-    }
-    error.downcast_ref().and_then(of_material)
+    };
+    Some(fixed.into())
 }
 
 /// What helps where a set lacks what was asked for.
@@ -100,33 +101,30 @@ mod tests {
     fn a_remedy_follows_each_error_that_an_option_or_a_recipe_helps_against() {
         let set = Tables::embedded();
         let large = || TooLarge { values: 1, needed: 1 << 30, limit: 1 << 20 };
-        let slow = BakeError::TooSlow { search: 99.0, default_seconds: 10.0 };
         let lobe = set.student_t([0.4, 0.1], 3.0).unwrap();
         let gold: Conductor<_> = Conductor::new(lobe, Metal::Gold);
         let unbound = gold.compensated(&set, Compensation::Turquin, StandIn::Refused).unwrap_err();
-        let covered = || "none".to_string();
-        for (told, says) in [
-            (told(&large()), "(--max-memory)"),
-            (told(&BakeError::Memory(large())), "(--max-memory)"),
-            (told(&slow), "(--patient)"),
-            (
-                told(&StoreError::TooLarge("out".into(), "9 bytes, and 8 are read".into())),
-                "(--per-set)",
-            ),
-            (told(&ConvertError::ShapeNeeded(DistributionKind::StudentT)), "(--shape)"),
-            (told(&MerlError::Dimensions([1, 2, 3])), "--input"),
-            (told(&MaterialError::NoAlbedo("silent".into())), "(--albedo)"),
-            (told(&unbound), "\n[[material]]\nname = \"another name\"\nsigma = [0.4, 0.1]\n"),
-            (told(&set.material("silver").unwrap_err()), "\n[[material]]\nname = \"silver\"\n"),
-            (
-                told(&MaterialError::NotCovered { gamma: 3.0, covered: covered() }),
-                "recipe line `gamma = 3`",
-            ),
+        let uncovered =
+            |gamma| Error::from(MaterialError::NotCovered { gamma, covered: "none".into() });
+        let cases: [(Error, &str); 11] = [
+            (large().into(), "(--max-memory)"),
+            (BakeError::Memory(large()).into(), "(--max-memory)"),
+            (BakeError::TooSlow { search: 99.0, default_seconds: 10.0 }.into(), "(--patient)"),
+            (StoreError::TooLarge("out".into(), "9 bytes of 8".into()).into(), "(--per-set)"),
+            (ConvertError::ShapeNeeded(DistributionKind::StudentT).into(), "(--shape)"),
+            (MerlError::Dimensions([1, 2, 3]).into(), "--input"),
+            (MaterialError::NoAlbedo("silent".into()).into(), "(--albedo)"),
+            (unbound.into(), "\n[[material]]\nname = \"another name\"\nsigma = [0.4, 0.1]\n"),
+            (set.material("silver").unwrap_err().into(), "\n[[material]]\nname = \"silver\"\n"),
+            (uncovered(3.0), "recipe line `gamma = 3`"),
             // No bake has tables of it.
-            (told(&MaterialError::NotCovered { gamma: 1.5005, covered: covered() }), "or more"),
-        ] {
+            (uncovered(1.5005), "or more"),
+        ];
+        for (error, says) in cases {
+            let told = told(&error.context("set"));
             let at = told.find(says).unwrap_or_else(|| panic!("no {says} in {told}"));
             assert!(at > 20 && !told[..at].contains("--"), "{told}");
+            assert!(told.starts_with("set: "), "{told}");
         }
     }
 }

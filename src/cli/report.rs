@@ -4,14 +4,14 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use microfacet_baker::input::{MAX_TEXT, open_or_stdin, shown};
-use microfacet_baker::progress::Meter;
 use microfacet_baker::store;
 use microfacet_report::{ReportError, Source, page, seconds};
 use microfacet_validate::record::Record;
 
 use super::words::exact_bytes;
 use super::{
-    Done, Failure, Outcome, print, progress, remedy, summarize, tables, unwritable, write_file,
+    Context, Failure, Result, anyhow, is_stream, print, summarize, tables, unwritable, watched,
+    write_file,
 };
 
 /// Write a page that shows what a set holds, where its errors are, and how its materials look.
@@ -34,11 +34,11 @@ pub(super) struct Args {
     validation: Option<PathBuf>,
 }
 
-pub(super) fn run(args: Args) -> Outcome {
+pub(super) fn run(args: &Args) -> Result<()> {
     let set = tables(args.tables.as_deref())?;
-    let to_stdout = args.out.as_os_str() == "-";
+    let to_stdout = is_stream(&args.out);
     if !to_stdout {
-        store::check_file(&args.out).map_err(|why| unwritable(&args.out, &why))?;
+        store::check_file(&args.out).map_err(|why| unwritable(&args.out, why))?;
     }
     let name = match &args.tables {
         Some(path) => path.file_name().unwrap_or(path.as_os_str()).display().to_string(),
@@ -46,35 +46,31 @@ pub(super) fn run(args: Args) -> Outcome {
     };
     let validation = args.validation.as_deref().map(validation).transpose()?;
     let source = Source { name: &name, set: &set, validation: validation.as_ref() };
-    let meter = Meter::default();
-    meter.expect(seconds(&source));
-    let bar = progress::show(&meter, "drawing");
-    let html = page(&source, &meter).map_err(|why| match (&why, &args.validation) {
+    let html = watched("drawing", seconds(&source), |meter| page(&source, meter));
+    let html = html.map_err(|why| match (&why, &args.validation) {
         (ReportError::OtherSet { .. }, Some(file)) => {
-            Failure(format!("{}: {}", shown(file), remedy::told(&why)))
+            Failure::from(why).context(shown(file).to_string())
         }
         _ => why.into(),
     })?;
-    drop(bar);
     if to_stdout {
-        print(&html)?;
-        return Ok(Done::Ok);
+        return print(&html);
     }
     write_file(&args.out, html.as_bytes())?;
-    summarize(&format!("{} ({})\n", args.out.display(), exact_bytes(html.len())))?;
-    Ok(Done::Ok)
+    summarize(&format!("{} ({})\n", args.out.display(), exact_bytes(html.len())))
 }
 
 /// Reads what `validate --json` printed.
-fn validation(path: &Path) -> Result<Record, Failure> {
-    let failed = |why: &dyn std::fmt::Display| Failure(format!("{}: {why}", shown(path)));
+fn validation(path: &Path) -> Result<Record> {
+    let name = || shown(path).to_string();
     let mut text = Vec::new();
-    let mut input = open_or_stdin(path, MAX_TEXT).map_err(|why| failed(&why))?;
-    input.read_to_end(&mut text).map_err(|why| failed(&why))?;
+    let mut input = open_or_stdin(path, MAX_TEXT).with_context(name)?;
+    input.read_to_end(&mut text).with_context(name)?;
     serde_json::from_slice(&text).map_err(|why| {
-        failed(&format!(
-            "not the result of a validation: {why}; give what `microfacet-bake validate SET --json` \
-             prints"
-        ))
+        anyhow!(
+            "{}: not the result of a validation: {why}; give what `microfacet-bake validate SET \
+             --json` prints",
+            name()
+        )
     })
 }

@@ -2,9 +2,6 @@
 
 use std::path::Path;
 
-use clap::ValueEnum;
-use clap::builder::PossibleValue;
-
 use microfacet_baker::library::{Library, PER_SET};
 use microfacet_baker::plan::{AlbedoWish, Options, Plan};
 use microfacet_baker::scene::Scene;
@@ -12,18 +9,34 @@ use microfacet_baker::table_spec::Quality;
 use microfacet_sampler::Tables;
 use microfacet_tables::{Precision, Table};
 
-use super::Failure;
-use super::values::{self, InRecipe};
+use super::values::{self, Named, named};
 use super::words::count;
+use super::{Result, bail, ensure};
+
+const PRECISIONS: [Named<Precision>; 3] = [
+    ("f32", "Single precision", Precision::F32),
+    ("f16", "Half precision", Precision::F16),
+    ("u16", "Sixteen-bit fixed point", Precision::U16),
+];
+
+const QUALITIES: [Named<Quality>; 3] = [
+    ("draft", "Small, inaccurate tables", Quality::Draft),
+    ("default", "CDF error below 3e-5 (gamma >= 1.8), G1 error below 1e-5", Quality::Default),
+    (
+        "high",
+        "CDF error below 3e-6 (gamma >= 1.8), G1 error below 2e-6; eight times the bytes",
+        Quality::High,
+    ),
+];
 
 #[derive(clap::Args)]
 pub(super) struct Request {
     /// Precision of the stored values.
-    #[arg(long, value_enum, default_value = "f32")]
-    precision: PrecisionArg,
+    #[arg(long, value_parser = named(&PRECISIONS), default_value = "f32")]
+    precision: Precision,
     /// Quality: how fine the tables are.
-    #[arg(long, value_enum, default_value = "default")]
-    quality: QualityArg,
+    #[arg(long, value_parser = named(&QUALITIES), default_value = "default")]
+    quality: Quality,
     /// Tabulate GGX (gamma = 2) as well, for a renderer without its closed forms.
     #[arg(long, requires = "scene")]
     tabulate_ggx: bool,
@@ -44,88 +57,51 @@ pub(super) struct Request {
     /// Most materials of one set; a scene with more becomes numbered sets with an index.
     #[arg(long, requires = "scene", value_name = "N", value_parser = values::count::<usize>(1..=PER_SET as u64), default_value_t = PER_SET)]
     per_set: usize,
-    #[command(flatten)]
-    _others: InRecipe,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum PrecisionArg {
-    /// Single precision.
-    F32,
-    /// Half precision.
-    F16,
-    /// Sixteen-bit fixed point.
-    U16,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum QualityArg {
-    /// Small, inaccurate tables.
-    Draft,
-    /// CDF error below 3e-5 (gamma >= 1.8), G1 error below 1e-5.
-    Default,
-    /// CDF error below 3e-6 (gamma >= 1.8), G1 error below 2e-6; eight times the bytes.
-    High,
+/// The name of a value.
+fn name<T: PartialEq>(all: &[Named<T>], value: &T) -> &'static str {
+    all.iter().find(|(.., listed)| listed == value).map_or("", |(name, ..)| name)
 }
 
 impl Request {
     pub(super) fn quality(&self) -> Quality {
-        match self.quality {
-            QualityArg::Draft => Quality::Draft,
-            QualityArg::Default => Quality::Default,
-            QualityArg::High => Quality::High,
-        }
+        self.quality
     }
 
     pub(super) fn precision(&self) -> Precision {
-        match self.precision {
-            PrecisionArg::F32 => Precision::F32,
-            PrecisionArg::F16 => Precision::F16,
-            PrecisionArg::U16 => Precision::U16,
-        }
+        self.precision
     }
 
     /// The options as they were typed, each with a space before it; those by default are left out.
     pub(super) fn repeated(&self) -> String {
-        let mut all = String::new();
-        let mut add = |option: &str, value: String| all += &format!(" {option}{value}");
-        let name = |value: Option<PossibleValue>| {
-            value.map_or(String::new(), |value| format!(" {}", value.get_name()))
-        };
-        if self.quality() != Quality::Default {
-            add("--quality", name(self.quality.to_possible_value()));
-        }
-        if self.precision() != Precision::F32 {
-            add("--precision", name(self.precision.to_possible_value()));
-        }
-        if self.per_set != PER_SET {
-            add("--per-set", format!(" {}", self.per_set));
-        }
-        let flags = [
-            (self.tabulate_ggx, "--tabulate-ggx"),
-            (self.albedo, "--albedo"),
-            (self.no_albedo, "--no-albedo"),
-            (self.strict, "--strict"),
-            (self.embedded, "--embedded"),
+        let quality = name(&QUALITIES, &self.quality);
+        let precision = name(&PRECISIONS, &self.precision);
+        let all = [
+            (self.quality != Quality::Default, format!(" --quality {quality}")),
+            (self.precision != Precision::F32, format!(" --precision {precision}")),
+            (self.per_set != PER_SET, format!(" --per-set {}", self.per_set)),
+            (self.tabulate_ggx, " --tabulate-ggx".into()),
+            (self.albedo, " --albedo".into()),
+            (self.no_albedo, " --no-albedo".into()),
+            (self.strict, " --strict".into()),
+            (self.embedded, " --embedded".into()),
         ];
-        for (_, flag) in flags.into_iter().filter(|(is_set, _)| *is_set) {
-            add(flag, String::new());
-        }
-        all
+        all.into_iter().filter_map(|(is_set, option)| is_set.then_some(option)).collect()
     }
 
     /// Reads a scene; `--strict` refuses one of which anything is doubtful.
-    pub(super) fn scene(&self, path: &Path) -> Result<Scene, Failure> {
+    pub(super) fn scene(&self, path: &Path) -> Result<Scene> {
         let scene = microfacet_scene::load(path)?;
-        let doubts = || scene.doubts();
         if self.strict
-            && let Some(first) = doubts().next()
+            && let mut doubts = scene.doubts()
+            && let Some(first) = doubts.next()
         {
-            let more = match doubts().count() - 1 {
+            let more = match doubts.count() {
                 0 => String::new(),
                 more => format!("; and {}", count(more, "further doubt")),
             };
-            return Err(Failure(format!("{first}{more}. Without --strict the rest is planned")));
+            bail!("{first}{more}. Without --strict the rest is planned");
         }
         Ok(scene)
     }
@@ -144,51 +120,49 @@ impl Request {
     }
 
     /// The scene divided into sets, and their plans; `max_error` is the budget of error, if any.
-    pub(super) fn library(&self, scene: Scene, max_error: Option<f64>) -> Result<Library, Failure> {
+    pub(super) fn library(&self, scene: Scene, max_error: Option<f64>) -> Result<Library> {
         Ok(Library::new(scene, self.per_set, self.options(max_error)?)?)
     }
 
     /// What a survey plans with: materials of a set, and options.
-    pub(super) fn planning(&self) -> Result<(usize, Options), Failure> {
+    pub(super) fn planning(&self) -> Result<(usize, Options)> {
         Ok((self.per_set, self.options(None)?))
     }
 
-    fn options(&self, max_error: Option<f64>) -> Result<Options, Failure> {
-        let mut embedded_albedo = false;
-        if self.embedded {
-            let embedded = Tables::embedded();
-            let (albedos, others): (Vec<&Table>, Vec<&Table>) =
-                embedded.tables().iter().partition(|table| table.kind.is_albedo());
-            let worst = |tables: &[&Table]| {
-                tables.iter().map(|table| table.certificate.worst()).fold(0.0, f64::max)
-            };
-            if matches!(self.quality(), Quality::High) {
-                return Err(Failure(
-                    "--embedded: the set compiled in is of default quality; drop --quality high"
-                        .into(),
-                ));
-            }
-            let worst_of_others = worst(&others);
-            if max_error.is_some_and(|max| max < worst_of_others) {
-                return Err(Failure(format!(
-                    "--embedded: the set compiled in has an error of {worst_of_others:.1e}; allow as much"
-                )));
-            }
-            // If its albedos are not accurate enough, better ones are baked.
-            embedded_albedo =
-                !albedos.is_empty() && max_error.is_none_or(|max| max >= worst(&albedos));
-        }
+    fn options(&self, max_error: Option<f64>) -> Result<Options> {
         Ok(Options {
             tabulate_ggx: self.tabulate_ggx,
             embedded: self.embedded,
-            embedded_albedo,
+            embedded_albedo: self.embedded && self.embedded_serves(max_error)?,
             albedo: match (self.albedo, self.no_albedo) {
                 (true, _) => AlbedoWish::All,
                 (_, true) => AlbedoWish::None,
                 _ => AlbedoWish::Auto,
             },
-            quality: self.quality(),
+            quality: self.quality,
             strict: self.strict,
         })
+    }
+
+    /// Refuses the set compiled in where it is not accurate enough, and returns whether its albedos
+    /// are; if not, better ones are baked.
+    fn embedded_serves(&self, max_error: Option<f64>) -> Result<bool> {
+        ensure!(
+            self.quality != Quality::High,
+            "--embedded: the set compiled in is of default quality; drop --quality high"
+        );
+        let embedded = Tables::embedded();
+        let (albedos, others): (Vec<&Table>, Vec<&Table>) =
+            embedded.tables().iter().partition(|table| table.kind.is_albedo());
+        let worst = |tables: &[&Table]| {
+            tables.iter().map(|table| table.certificate.worst()).fold(0.0, f64::max)
+        };
+        let allows = |error: f64| max_error.is_none_or(|max| max >= error);
+        let worst_of_others = worst(&others);
+        ensure!(
+            allows(worst_of_others),
+            "--embedded: the set compiled in has an error of {worst_of_others:.1e}; allow as much"
+        );
+        Ok(!albedos.is_empty() && allows(worst(&albedos)))
     }
 }

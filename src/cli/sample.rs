@@ -1,7 +1,6 @@
 //! `sample`: draws normals of one material and view into a safetensors file.
 
 use std::io::{self, BufWriter, IsTerminal, Write};
-use std::iter;
 use std::path::PathBuf;
 
 use clap::{ArgGroup, ValueEnum};
@@ -11,16 +10,17 @@ use rand::{RngExt, SeedableRng};
 use safetensors::Dtype;
 use safetensors::tensor::{Metadata, TensorInfo};
 
-use microfacet_baker::progress::{Meter, Stage};
+use microfacet_baker::progress::Stage;
 use microfacet_baker::store::replace_with;
 use microfacet_model as model;
 use microfacet_model::MicrofacetDistribution as _;
-use microfacet_sampler::{Lobe, MicrofacetDistribution as _};
+use microfacet_sampler::MicrofacetDistribution as _;
 use microfacet_validate::configuration::Configuration;
 
 use super::view::View;
 use super::{
-    Done, Failure, Outcome, interrupt, progress, report, summarize, tables, unwritable, values,
+    Context, Result, ensure, interrupt, is_stream, note, summarize, tables, unwritable, values,
+    watched,
 };
 
 /// Draw normals for one material and view into a safetensors file: `normals` [N,3], `pdf` [N], f32.
@@ -38,8 +38,6 @@ pub(super) struct Args {
     gamma: f64,
     #[command(flatten)]
     view: View,
-    #[command(flatten)]
-    others: values::OtherNames,
     /// Number of normals.
     #[arg(long, value_name = "N", value_parser = values::count::<usize>(1..=1_000_000_000))]
     count: usize,
@@ -69,69 +67,63 @@ enum Method {
     Exact,
 }
 
-/// A source of normals, which can begin again: the same seed gives the same ones.
-enum Source {
-    Table(Box<Lobe>, Vec3),
-    Exact(model::StudentT, Vec3),
-    Ndf(model::StudentT),
-}
+/// Draws a normal, with its density.
+type Draw = Box<dyn Fn(&mut StdRng) -> (Vec3, f32)>;
 
-impl Source {
-    fn new(args: &Args) -> Result<Self, Failure> {
-        let [sigma_x, sigma_y] = args.sigma;
-        let truth = model::StudentT::new([sigma_x, sigma_y], args.gamma)?;
-        let Some([theta, phi]) = args.view.angles()? else { return Ok(Self::Ndf(truth)) };
-        let (gamma, seed) = (args.gamma, args.seed);
-        let v = Configuration { sigma_x, sigma_y, gamma, theta, phi, seed }.view();
-        match args.method {
-            Method::Table => {
-                values::tabulated(gamma, ", or draw exact normals with --method exact")?;
-                let lobe = tables(args.tables.as_deref())?.lobe(args.sigma, gamma)?;
-                Ok(Self::Table(Box::new(lobe), v))
-            }
-            Method::Exact if args.tables.is_some() => Err(Failure(
-                "--method exact draws without tables: drop --tables, or give --method table".into(),
-            )),
-            Method::Exact => Ok(Self::Exact(truth, v)),
+fn source(args: &Args) -> Result<Draw> {
+    let [sigma_x, sigma_y] = args.sigma;
+    let truth = model::StudentT::new([sigma_x, sigma_y], args.gamma)?;
+    let Some([theta, phi]) = args.view.angles()? else {
+        return Ok(Box::new(move |random| {
+            let m = truth.sample_ndf([random.random(), random.random()]);
+            (m.as_vec3(), (truth.d(m) * m.z) as f32)
+        }));
+    };
+    let (gamma, seed) = (args.gamma, args.seed);
+    let v = Configuration { sigma_x, sigma_y, gamma, theta, phi, seed }.view();
+    match args.method {
+        Method::Table => {
+            values::tabulated(&[gamma], ", or draw exact normals with --method exact")?;
+            let lobe = tables(args.tables.as_deref())?.lobe(args.sigma, gamma)?;
+            Ok(Box::new(move |random| {
+                let m = lobe.sample_visible_normal(v, [random.random(), random.random()]);
+                (m, lobe.table_pdf(v, m))
+            }))
         }
-    }
-
-    /// Normals with their densities, without end.
-    fn begin(&self, seed: u64) -> Box<dyn Iterator<Item = (Vec3, f32)> + '_> {
-        let mut random = StdRng::seed_from_u64(seed);
-        match self {
-            Self::Table(lobe, v) => Box::new(iter::repeat_with(move || {
-                let m = lobe.sample_visible_normal(*v, [random.random(), random.random()]);
-                (m, lobe.table_pdf(*v, m))
-            })),
-            Self::Exact(truth, v) => Box::new(iter::repeat_with(move || {
-                let v = v.as_dvec3();
+        Method::Exact => {
+            ensure!(
+                args.tables.is_none(),
+                "--method exact draws without tables: drop --tables, or give --method table"
+            );
+            let v = v.as_dvec3();
+            Ok(Box::new(move |random| {
                 let m = truth.sample_visible_by_rejection(v, &mut || random.random());
                 (m.as_vec3(), truth.visible_normal_pdf(v, m) as f32)
-            })),
-            Self::Ndf(truth) => Box::new(iter::repeat_with(move || {
-                let m = truth.sample_ndf([random.random(), random.random()]);
-                (m.as_vec3(), (truth.d(m) * m.z) as f32)
-            })),
+            }))
         }
     }
+}
 
-    /// Writes a safetensors file. All normals precede all densities in it, so they are drawn twice
-    /// rather than kept: a file of any length takes the same memory.
-    fn write(&self, count: usize, seed: u64, stage: &Stage, out: &mut dyn Write) -> io::Result<()> {
-        stage.split(2 * count);
-        let mut out = BufWriter::new(out);
-        out.write_all(&header(count)?)?;
-        for (m, _) in self.begin(seed).take(count) {
-            m.to_array().iter().try_for_each(|x| out.write_all(&x.to_le_bytes()))?;
-            stage.step();
-        }
-        for (_, pdf) in self.begin(seed).take(count) {
-            out.write_all(&pdf.to_le_bytes())?;
-            stage.step();
-        }
-        out.flush()
+/// Writes a safetensors file. All normals precede all densities in it, so they are drawn twice
+/// rather than kept: a file of any length takes the same memory.
+fn write(draw: &Draw, args: &Args, stage: &Stage, out: &mut dyn Write) -> io::Result<()> {
+    let count = args.count;
+    stage.split(2 * count);
+    let mut out = BufWriter::new(out);
+    out.write_all(&header(count)?)?;
+    let mut random = StdRng::seed_from_u64(args.seed);
+    for _ in 0..count {
+        let (m, _) = draw(&mut random);
+        m.to_array().iter().try_for_each(|x| out.write_all(&x.to_le_bytes()))?;
+        stage.step();
     }
+    let mut random = StdRng::seed_from_u64(args.seed);
+    for _ in 0..count {
+        let (_, pdf) = draw(&mut random);
+        out.write_all(&pdf.to_le_bytes())?;
+        stage.step();
+    }
+    out.flush()
 }
 
 /// What stands before the values in a safetensors file: the length of the description, and the
@@ -156,38 +148,32 @@ fn header(count: usize) -> io::Result<Vec<u8>> {
 /// Seconds for a normal, about; only its share of the whole counts.
 const SECONDS: f64 = 1e-7;
 
-pub(super) fn run(args: Args) -> Outcome {
-    let to_stdout = args.out.as_os_str() == "-";
-    if to_stdout && io::stdout().is_terminal() {
-        return Err(Failure(
-            "standard output is a terminal, and safetensors are binary: pipe them to a program, or name a file"
-                .into(),
-        ));
-    }
-    let source = Source::new(&args)?;
-    let Args { count, seed, .. } = args;
-    let meter = Meter::default();
+pub(super) fn run(args: &Args) -> Result<()> {
+    let to_stdout = is_stream(&args.out);
+    ensure!(
+        !(to_stdout && io::stdout().is_terminal()),
+        "standard output is a terminal, and safetensors are binary: pipe them to a program, or \
+         name a file"
+    );
+    let draw = source(args)?;
+    let count = args.count;
     let seconds = SECONDS * count as f64;
-    meter.expect(seconds);
-    let stage = meter.stage(seconds);
-    let bar = progress::show(&meter, "drawing");
-    if to_stdout {
-        interrupt::leaves_stream();
-        match source.write(count, seed, &stage, &mut io::stdout().lock()) {
-            Ok(()) => report("note", format!("{count} normals on standard output")),
-            Err(why) if why.kind() == io::ErrorKind::BrokenPipe => report(
-                "note",
-                format!(
-                    "the reader of standard output left before all {count} normals were written"
-                ),
-            ),
-            Err(why) => return Err(Failure(format!("standard output: {why}"))),
-        }
-        return Ok(Done::Ok);
+    let write = |out: &mut dyn Write| {
+        watched("drawing", seconds, |meter| write(&draw, args, &meter.stage(seconds), out))
+    };
+    if !to_stdout {
+        replace_with(&args.out, write).map_err(|why| unwritable(&args.out, why))?;
+        return summarize(&format!("{} ({count} normals)\n", args.out.display()));
     }
-    replace_with(&args.out, |out| source.write(count, seed, &stage, out))
-        .map_err(|why| unwritable(&args.out, &why))?;
-    drop(bar);
-    summarize(&format!("{} ({count} normals)\n", args.out.display()))?;
-    Ok(Done::Ok)
+    interrupt::leaves_stream();
+    match write(&mut io::stdout().lock()) {
+        Err(why) if why.kind() == io::ErrorKind::BrokenPipe => note(format!(
+            "the reader of standard output left before all {count} normals were written"
+        )),
+        written => {
+            written.context("standard output")?;
+            note(format!("{count} normals on standard output"));
+        }
+    }
+    Ok(())
 }

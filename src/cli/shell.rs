@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Arg, ArgGroup, Command, CommandFactory, Id};
+use clap::{Command, CommandFactory};
 use clap_complete::Shell;
 use clap_mangen::Man;
 
-use super::{Cli, Done, Failure, Outcome, summarize, write, write_file};
+use super::{Cli, Result, summarize, write, write_file};
 
 /// The name under which a shell finds this command.
 const NAME: &str = "microfacet-bake";
@@ -33,48 +33,25 @@ pub(super) struct ManPages {
     out: Option<PathBuf>,
 }
 
-pub(super) fn completions(args: Completions) -> Outcome {
+pub(super) fn completions(args: &Completions) -> Result<()> {
     // Clap's script for bash splits labels at the two underscores that it puts for a hyphen, and
     // then finds none of its own; so it gets a name without one.
     let plain = NAME.replace('-', "");
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut visible(&Cli::command()), &plain, &mut script);
-    write(String::from_utf8(script)?.replace(&plain, NAME).as_bytes())?;
-    Ok(Done::Ok)
+    clap_complete::generate(args.shell, &mut Cli::command(), &plain, &mut script);
+    write(String::from_utf8(script)?.replace(&plain, NAME).as_bytes())
 }
 
-/// A command without the hidden options, which exist to be refused.
-fn visible(command: &Command) -> Command {
-    let shown = || command.get_arguments().filter(|argument| !argument.is_hide_set());
-    let subcommands = command.get_subcommands().map(visible);
-    let about = command.get_about().cloned().unwrap_or_default();
-    // Options require groups by name, and a group may hold nothing that is not there.
-    let groups = command.get_groups().map(|group| {
-        let of_group = |id: &&Id| group.get_args().any(|other| other == *id);
-        ArgGroup::new(group.get_id()).args(shown().map(Arg::get_id).filter(of_group))
-    });
-    Command::new(command.get_name().to_owned())
-        .about(about)
-        .args(shown().cloned())
-        .groups(groups)
-        .subcommands(subcommands)
-}
-
-pub(super) fn man(args: ManPages) -> Outcome {
+pub(super) fn man(args: &ManPages) -> Result<()> {
     let mut command = Cli::command().disable_help_subcommand(true);
     command.build();
-    match args.out {
-        None => write(&page(command)?)?,
-        Some(folder) => {
-            let count = pages(command, &folder)?;
-            summarize(&format!("{count} pages in {}\n", folder.display()))?;
-        }
-    }
-    Ok(Done::Ok)
+    let Some(folder) = &args.out else { return write(&page(command)?) };
+    let count = pages(command, folder)?;
+    summarize(&format!("{count} pages in {}\n", folder.display()))
 }
 
 /// Writes the page of a command and those of its subcommands; returns their number.
-fn pages(command: Command, folder: &Path) -> Result<usize, Failure> {
+fn pages(command: Command, folder: &Path) -> Result<usize> {
     let mut count = 1;
     for subcommand in command.get_subcommands() {
         count += pages(subcommand.clone(), folder)?;
@@ -84,7 +61,7 @@ fn pages(command: Command, folder: &Path) -> Result<usize, Failure> {
     Ok(count)
 }
 
-fn page(command: Command) -> Result<Vec<u8>, Failure> {
+fn page(command: Command) -> Result<Vec<u8>> {
     let title = page_name(&command).to_uppercase();
     let mut text = Vec::new();
     Man::new(command).title(title).render(&mut text)?;

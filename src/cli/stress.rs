@@ -1,15 +1,14 @@
 //! `validate --stress`: prints the report as a table by region.
 
-use serde_json::json;
+use serde_json::{Value, json};
 
-use microfacet_baker::progress::Meter;
 use microfacet_report::words::command::query;
 use microfacet_sampler::Tables;
 use microfacet_validate::stress::{
-    ERRORS, ROUGHNESSES, Region, Report, SHAPES, VIEWS, run, seconds,
+    ERRORS, ROUGHNESSES, Region, Report, SHAPES, VIEWS, Violation, Worst, run, seconds,
 };
 
-use super::{Done, Outcome, print_json, progress, summarize, verdict};
+use super::{Done, Outcome, print_json, summarize, verdict, watched};
 
 /// Runs the test; `source` is the option that gives the set to the queries that are printed.
 pub(super) fn stress(
@@ -19,12 +18,8 @@ pub(super) fn stress(
     as_json: bool,
     source: &str,
 ) -> Outcome {
-    let meter = Meter::default();
     let work = seconds(tables, points);
-    meter.expect(work);
-    let bar = progress::show(&meter, "testing");
-    let report = run(tables, points, seed, &meter.stage(work))?;
-    drop(bar);
+    let report = watched("testing", work, |meter| run(tables, points, seed, &meter.stage(work)))?;
     let passed = report.total().violations.is_empty();
     if as_json {
         print_json(&document(&report, source))?;
@@ -36,15 +31,12 @@ pub(super) fn stress(
 
 /// Regions with at least one point, and their names.
 fn regions(report: &Report) -> impl Iterator<Item = ([&'static str; 3], &Region)> {
-    let of_view = |shape: usize, view: usize| {
-        let row = &report.regions[shape][view];
-        row.iter()
-            .zip(ROUGHNESSES)
-            .map(move |(region, rough)| ([SHAPES[shape], VIEWS[view], rough], region))
-    };
-    let all = (0..SHAPES.len())
-        .flat_map(move |shape| (0..VIEWS.len()).flat_map(move |view| of_view(shape, view)));
-    all.filter(|(_, region)| region.points > 0)
+    let all = report.regions.as_flattened().as_flattened().iter().enumerate();
+    let named = all.map(|(i, region)| {
+        let (i, rough) = (i / ROUGHNESSES.len(), i % ROUGHNESSES.len());
+        ([SHAPES[i / VIEWS.len()], VIEWS[i % VIEWS.len()], ROUGHNESSES[rough]], region)
+    });
+    named.filter(|(_, region)| region.points > 0)
 }
 
 fn summary(report: &Report, source: &str) -> String {
@@ -69,35 +61,25 @@ fn summary(report: &Report, source: &str) -> String {
         }
     }
     let total = report.total();
-    for (rule, violation) in &total.violations {
-        text += &format!(
-            "BROKEN {} times: {rule}, at worst {:e}",
-            violation.count, violation.worst.value
-        );
-        text += &format!("\n  {}{source}\n", query(&violation.worst.at));
+    for (rule, Violation { count, worst }) in &total.violations {
+        text += &format!("BROKEN {count} times: {rule}, at worst {:e}\n", worst.value);
+        text += &format!("  {}{source}\n", query(&worst.at));
     }
     text + &format!("{} points\n", total.points)
 }
 
-fn document(report: &Report, source: &str) -> serde_json::Value {
-    let regions: Vec<_> = regions(report)
-        .map(|([shape, view, sigma], region)| {
-            let errors: Vec<_> = ERRORS
-                .iter()
-                .zip(&region.errors)
-                .map(|(name, worst)| json!({ "quantity": name, "max": worst.value, "query": format!("{}{source}", query(&worst.at)) }))
-                .collect();
-            let violations: Vec<_> = region
-                .violations
-                .iter()
-                .map(|(rule, found)| json!({ "rule": rule, "count": found.count, "worst": found.worst.value, "query": format!("{}{source}", query(&found.worst.at)) }))
-                .collect();
-            json!({
-                "shape": shape, "view": view, "sigma": sigma, "points": region.points,
-                "errors": errors, "violations": violations,
-            })
+fn document(report: &Report, source: &str) -> Value {
+    let query = |worst: &Worst| query(&worst.at) + source;
+    let error = |(name, worst): (&&str, &Worst)| json!({ "quantity": name, "max": worst.value, "query": query(worst) });
+    let violation = |(rule, Violation { count, worst }): (&&str, &Violation)| json!({ "rule": rule, "count": count, "worst": worst.value, "query": query(worst) });
+    let region = |([shape, view, sigma], region): ([&str; 3], &Region)| {
+        json!({
+            "shape": shape, "view": view, "sigma": sigma, "points": region.points,
+            "errors": ERRORS.iter().zip(&region.errors).map(error).collect::<Value>(),
+            "violations": region.violations.iter().map(violation).collect::<Value>(),
         })
-        .collect();
-    let total = report.total();
-    json!({ "passed": total.violations.is_empty(), "points": total.points, "regions": regions })
+    };
+    let Region { points, violations, .. } = report.total();
+    let regions: Value = regions(report).map(region).collect();
+    json!({ "passed": violations.is_empty(), "points": points, "regions": regions })
 }

@@ -1,9 +1,7 @@
 //! `validate`: tests the sampler's normals against the analytic densities.
 
-use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
-use microfacet_baker::progress::Meter;
 use microfacet_report::words::command;
 use microfacet_sampler::Tables;
 use microfacet_tables::Reflectance;
@@ -11,12 +9,13 @@ use microfacet_validate::configuration::{Configuration, configurations, shapes};
 use microfacet_validate::furnace::{Furnace, Survey, survey, survey_seconds};
 use microfacet_validate::record::Record;
 use microfacet_validate::{
-    Options, Outcome as Result, PDF_TOLERANCE, Report, run as run_all, seconds,
+    Options, Outcome as Found, PDF_TOLERANCE, Report, run as run_all, seconds,
 };
 
 use super::view::View;
+use super::words::{count, distinct, first, number, shell};
 use super::{
-    Done, Failure, Outcome, print_json, progress, summarize, tables, values, verdict, words,
+    Done, Outcome, Result, bail, ensure, print_json, summarize, tables, values, verdict, watched,
 };
 
 /// Test normals drawn from tables against the analytic densities by chi-square.
@@ -39,7 +38,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = values::seed)]
     seed: u64,
     /// Multiply the model's gamma by this; 1.01 shows that the tests reject.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = values::number(FACTORS, "1 leaves gamma as it is"))]
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = values::factor)]
     perturb_gamma: f64,
     /// Print the result as JSON, with the identity of the set; `report --validation` reads it.
     #[arg(long)]
@@ -52,8 +51,6 @@ pub(super) struct Args {
     gamma: Option<f64>,
     #[command(flatten, next_help_heading = ONE)]
     view: View,
-    #[command(flatten)]
-    others: values::OtherNames,
     /// Test every public function at corners and random points instead: no NaN, nothing out of
     /// range.
     #[arg(long, help_heading = STRESS, conflicts_with_all = ["sigma", "gamma", "theta", "phi", "degrees", "perturb_gamma", "samples", "configurations"])]
@@ -66,23 +63,18 @@ pub(super) struct Args {
 const ONE: &str = "One configuration";
 const STRESS: &str = "Stress test";
 
-/// Factors on gamma: beyond, a table of another shape is wrong whatever it holds.
-const FACTORS: RangeInclusive<f64> = 0.5..=2.0;
-
-pub(super) fn run(args: Args) -> Outcome {
+pub(super) fn run(args: &Args) -> Outcome {
     let set = tables(args.tables.as_deref())?;
     // The set as an argument of the commands that are printed.
-    let source = args.tables.as_deref().map(words::shell);
+    let source = args.tables.as_deref().map(shell);
     if args.stress {
-        if shapes(&set).is_empty() {
-            return Err(Failure(nothing_to_judge(&set)));
-        }
+        ensure!(!shapes(&set).is_empty(), nothing_to_judge(&set));
         let source = source.map_or(String::new(), |path| format!(" --tables {path}"));
         return super::stress::stress(&set, args.points, args.seed, args.json, &source);
     }
     let chosen = match (args.sigma, args.gamma, args.view.angles()?) {
         (Some([sigma_x, sigma_y]), Some(gamma), Some([theta, phi])) => {
-            values::tabulated(gamma, "")?;
+            values::tabulated(&[gamma], "")?;
             vec![Configuration { sigma_x, sigma_y, gamma, theta, phi, seed: args.seed }]
         }
         _ => configurations(&set, args.configurations, args.seed),
@@ -90,56 +82,61 @@ pub(super) fn run(args: Args) -> Outcome {
     let factor = args.perturb_gamma;
     let smallest = chosen.iter().map(|one| one.gamma).fold(f64::INFINITY, f64::min);
     if smallest * factor <= 1.5 {
-        return Err(Failure(format!(
-            "--perturb-gamma {factor} takes the gamma {} of a configuration out of (1.5, inf]: give a factor above {:.4}",
-            words::number(smallest),
+        bail!(
+            "--perturb-gamma {factor} takes the gamma {} of a configuration out of (1.5, inf]: \
+             give a factor above {:.4}",
+            number(smallest),
             1.5 / smallest + 5e-5
-        )));
+        );
     }
     let options = Options { samples: args.samples, gamma_factor: factor };
-    let meter = Meter::default();
-    let normals = seconds(chosen.len(), options);
     // A single configuration tests its lobe only.
-    let furnace = if args.sigma.is_none() { survey_seconds(&set) } else { 0.0 };
-    meter.expect(normals + furnace);
-    let bar = progress::show(&meter, "validating");
-    let result = run_all(&set, &chosen, options, &meter.stage(normals))?;
-    let furnaces = match args.sigma {
-        None => survey(&set, &meter.stage(furnace))?,
-        Some(_) => Vec::new(),
-    };
-    drop(bar);
-    if chosen.is_empty() && furnaces.is_empty() {
-        return Err(Failure(nothing_to_judge(&set)));
-    }
-    let untested = if args.sigma.is_none() { untested(&set) } else { Vec::new() };
+    let whole = args.sigma.is_none();
+    let normals = seconds(chosen.len(), options);
+    let furnace = if whole { survey_seconds(&set) } else { 0.0 };
+    let (result, furnaces) = watched("validating", normals + furnace, |meter| -> Result<_> {
+        let result = run_all(&set, &chosen, options, &meter.stage(normals))?;
+        let furnaces = if whole { survey(&set, &meter.stage(furnace))? } else { Vec::new() };
+        Ok((result, furnaces))
+    })?;
+    ensure!(!chosen.is_empty() || !furnaces.is_empty(), nothing_to_judge(&set));
+    let untested = if whole { untested(&set) } else { Vec::new() };
     let passed = result.passed() && furnaces.iter().all(Survey::passed);
-    let source = source.map_or(String::new(), |path| format!("{path} "));
     if args.json {
         let record = Record::new(&set, options, &result, &furnaces, untested)?;
         print_json(&serde_json::to_value(&record)?)?;
         return Ok(Done::judged(passed));
     }
-    if !result.reports.is_empty() {
-        summarize(&summary(&result, options, &source))?;
-    }
-    summarize(&white(&furnaces))?;
-    for what in untested.iter().take(SHOWN) {
-        summarize(&format!("not tested: {what}\n"))?;
-    }
-    if let Some(more @ [_, ..]) = untested.get(SHOWN..) {
-        summarize(&format!(
-            "not tested: {} more; --json lists all\n",
-            words::count(more.len(), "table")
-        ))?;
-    }
-    if result.rejected() > 0 {
-        summarize(NEXT)?;
-    }
-    if let Some(why) = unsound(&result) {
-        summarize(&why)?;
-    }
+    let source = source.map_or(String::new(), |path| format!("{path} "));
+    summarize(&text(&result, options, &source, &furnaces, &untested))?;
     verdict(passed)
+}
+
+fn text(
+    result: &Found,
+    options: Options,
+    source: &str,
+    furnaces: &[Survey],
+    untested: &[String],
+) -> String {
+    let mut text = String::new();
+    if !result.reports.is_empty() {
+        text += &summary(result, options, source);
+    }
+    text += &white(furnaces);
+    let others = |more: &[String]| {
+        format!("not tested: {} more; --json lists all\n", count(more.len(), "table"))
+    };
+    text += &first(untested, SHOWN, |what| format!("not tested: {what}\n"), others);
+    if result.rejected() > 0 {
+        text += NEXT;
+    }
+    // Chi-square may pass where an integral is not one. Written so that a NaN counts.
+    let off = result.worst_integral().map_or(0.0, |worst| worst.pdf_integral - 1.0);
+    if !(off.abs() <= PDF_TOLERANCE) {
+        text += &format!("the integral of table_pdf may differ from 1 by {PDF_TOLERANCE:e} only\n");
+    }
+    text
 }
 
 /// Lines of what is not tested; a library has a table for each material.
@@ -149,24 +146,16 @@ const SHOWN: usize = 6;
 const NEXT: &str = "to tell chance from a defect, repeat the worst configuration with other seeds (--seed) and more normals\n\
      (--samples): chance goes away, and the p of a defect falls\n";
 
-/// Why a run rejects where chi-square does not: an integral that is not one.
-fn unsound(result: &Result) -> Option<String> {
-    let off = result.worst_integral()?.pdf_integral - 1.0;
-    // Written so that a NaN counts.
-    let wrong = !(off.abs() <= PDF_TOLERANCE);
-    wrong
-        .then(|| format!("the integral of table_pdf may differ from 1 by {PDF_TOLERANCE:e} only\n"))
-}
-
 /// Why a set has nothing that can be tested, and what to give instead.
 fn nothing_to_judge(set: &Tables) -> String {
-    let mut kinds: Vec<&str> = set.tables().iter().map(|table| table.kind.name()).collect();
+    let mut kinds = distinct(set.tables().iter().map(|table| table.kind.name()));
     kinds.sort_unstable();
-    kinds.dedup();
     format!(
-        "nothing to judge: visible normals need tables of the kinds shadowing, visible_slope and visible_slope_conditional for the \
-         same gamma, white furnaces (without --stress) one of the kind albedo, and here are only tables of the kind {}; give the folder or the \
-         safetensors file of the whole set, or see `microfacet-bake inspect --details` for what was measured when they were baked",
+        "nothing to judge: visible normals need tables of the kinds shadowing, visible_slope and \
+         visible_slope_conditional for the same gamma, white furnaces (without --stress) one of \
+         the kind albedo, and here are only tables of the kind {}; give the folder or the \
+         safetensors file of the whole set, or see `microfacet-bake inspect --details` for what \
+         was measured when they were baked",
         kinds.join(", ")
     )
 }
@@ -189,7 +178,7 @@ fn untested(set: &Tables) -> Vec<String> {
     rest
 }
 
-fn summary(result: &Result, options: Options, source: &str) -> String {
+fn summary(result: &Found, options: Options, source: &str) -> String {
     let reports = &result.reports;
     let max = |f: fn(&Report) -> f64| reports.iter().map(f).fold(0.0, f64::max);
     let mut text = format!(

@@ -1,15 +1,38 @@
-//! Values of options and columns as people write them: counts, sizes, sigma, gamma and angles.
+//! Values of options and columns as they are written: counts, sizes, sigma, gamma and angles.
 
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
 use bytesize::ByteSize;
-use clap::builder::UnknownArgumentValueParser;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use microfacet_baker::input::angles::Angles;
-use microfacet_baker::scene::did_you_mean_key;
 use microfacet_baker::table_spec::GAMMA_MIN;
-use microfacet_sampler::Ggx;
+use microfacet_sampler::{Ggx, Masking};
+
+use super::{Result, anyhow, bail, ensure};
+
+/// A value of an option by its name, with what `--help` says of it. One of which nothing is said is
+/// another name of a value, and hidden.
+pub(super) type Named<T> = (&'static str, &'static str, T);
+
+/// Parses a name as its value.
+pub(super) fn named<T: Copy + Send + Sync>(
+    all: &'static [Named<T>],
+) -> impl TypedValueParser<Value = T> {
+    let shown =
+        |&(name, help, _): &Named<T>| PossibleValue::new(name).help(help).hide(help.is_empty());
+    PossibleValuesParser::new(all.iter().map(shown)).map(|typed| {
+        let found = all.iter().find(|(name, ..)| name.eq_ignore_ascii_case(&typed));
+        found.expect("one of the possible values").2
+    })
+}
+
+/// Parses a form of masking.
+pub(super) fn masking() -> impl TypedValueParser<Value = Masking> {
+    PossibleValuesParser::new(Masking::ALL.map(Masking::name))
+        .try_map(|name| name.parse::<Masking>())
+}
 
 /// Parses a whole number as `100000` or `1e5`, and checks its range.
 pub(super) fn count<T: TryFrom<u64>>(
@@ -18,17 +41,11 @@ pub(super) fn count<T: TryFrom<u64>>(
     move |text| {
         let n = whole(text).filter(|n| range.contains(n)).and_then(|n| T::try_from(n).ok());
         n.ok_or_else(|| {
-            format!(
-                "\"{text}\" must be a whole number in [{}, {}], such as {}",
-                power(*range.start()),
-                power(*range.end()),
-                // The largest power of ten up to a million that the range holds.
-                (0..=6)
-                    .rev()
-                    .map(|n| 10_u64.pow(n))
-                    .find(|n| range.contains(n))
-                    .map_or_else(|| power(*range.start()), power)
-            )
+            let [low, high] = [*range.start(), *range.end()];
+            // The largest power of ten up to a million that the range holds.
+            let example = (0..=6).rev().map(|n| 10_u64.pow(n)).find(|n| range.contains(n));
+            let [low, high, example] = [low, high, example.unwrap_or(low)].map(power);
+            format!("\"{text}\" must be a whole number in [{low}, {high}], such as {example}")
         })
     }
 }
@@ -38,25 +55,26 @@ pub(super) fn seed(text: &str) -> Result<u64, String> {
     count(0..=u64::MAX)(text)
 }
 
-/// Parses a number, and checks its range; `hint` says what its ends mean.
+/// Parses a number that is allowed; `must` says which numbers are.
 pub(super) fn number(
-    range: RangeInclusive<f64>,
-    hint: &'static str,
+    is_allowed: fn(&f64) -> bool,
+    must: &'static str,
 ) -> impl Fn(&str) -> Result<f64, String> + Clone {
-    move |text| match text.trim().parse() {
-        Ok(x) if range.contains(&x) => Ok(x),
-        _ => Err(format!(
-            "\"{text}\" must be a number in [{}, {}]; {hint}",
-            range.start(),
-            range.end()
-        )),
+    move |text| {
+        let x = text.trim().parse().ok().filter(is_allowed);
+        x.ok_or_else(|| format!("\"{text}\" must be {must}"))
     }
 }
 
-/// Parses a number of any size; whoever uses it knows its range.
+/// Parses a number of any size; what uses it knows its range.
 pub(super) fn finite(text: &str) -> Result<f64, String> {
-    let x = text.trim().parse().ok().filter(|x: &f64| x.is_finite());
-    x.ok_or_else(|| format!("\"{text}\" must be a finite number"))
+    number(|x| x.is_finite(), "a finite number")(text)
+}
+
+/// Parses a factor on γ that makes tests reject. Beyond, a table of another shape is wrong whatever
+/// it holds.
+pub(super) fn factor(text: &str) -> Result<f64, String> {
+    number(|x| (0.5..=2.0).contains(x), "a number in [0.5, 2]; 1 leaves gamma as it is")(text)
 }
 
 /// A whole number, with an exponent or without.
@@ -70,7 +88,7 @@ fn whole(text: &str) -> Option<u64> {
     (x.fract() == 0.0 && (0.0..1.8446744073709552e19).contains(&x)).then_some(x as u64)
 }
 
-/// A large power of ten as people write it.
+/// A number, a large power of ten as `1e6`.
 fn power(n: u64) -> String {
     match n.checked_ilog10() {
         Some(e) if e > 4 && n == 10_u64.pow(e) => format!("1e{e}"),
@@ -87,81 +105,36 @@ pub(super) fn size(text: &str) -> Result<u64, String> {
 }
 
 /// Parses σ as `X` or `X,Y`.
-pub(super) fn sigma(text: &str) -> Result<[f64; 2], String> {
-    let parts: Vec<&str> = text.split(',').collect();
-    let one = |part: &str| {
-        let sigma = part.trim().parse::<f64>().map_err(|_| {
-            format!("sigma \"{part}\" must be a number; give X, or X,Y for an anisotropic material")
+pub(super) fn sigma(text: &str) -> Result<[f64; 2]> {
+    let one = |part: &str| -> Result<f64> {
+        let sigma = part.trim().parse().map_err(|_| {
+            anyhow!("sigma \"{part}\" must be a number; give X, or X,Y for an anisotropic material")
         })?;
         // Every lobe has the same range, and GGX needs no table to say it.
-        Ggx::new(sigma).map(|_| sigma).map_err(|why| why.to_string())
+        Ggx::new(sigma)?;
+        Ok(sigma)
     };
-    match parts[..] {
+    match text.split(',').collect::<Vec<_>>()[..] {
         [both] => Ok([one(both)?; 2]),
         [x, y] => Ok([one(x)?, one(y)?]),
-        _ => Err(format!("\"{text}\" has {} values; give X, or X,Y", parts.len())),
+        ref parts => bail!("\"{text}\" has {} values; give X, or X,Y", parts.len()),
     }
 }
 
 /// Parses γ ∈ (1.5, ∞], `inf` included.
 pub(super) fn gamma(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(gamma) if gamma > 1.5 => Ok(gamma),
-        _ => Err(format!(
-            "gamma \"{text}\" must be a number in (1.5, inf]; 2 is GGX, inf is Beckmann"
-        )),
-    }
+    number(|&gamma| gamma > 1.5, "a number in (1.5, inf]; 2 is GGX, inf is Beckmann")(text)
 }
 
 /// Refuses a γ of the family that no table covers, of this set or any other; with what else helps.
-pub(super) fn tabulated(gamma: f64, remedy: &str) -> Result<(), String> {
-    if gamma >= GAMMA_MIN {
-        return Ok(());
+pub(super) fn tabulated(gammas: &[f64], remedy: &str) -> Result<()> {
+    match gammas.iter().find(|&&gamma| gamma < GAMMA_MIN) {
+        None => Ok(()),
+        Some(gamma) => bail!(
+            "gamma = {gamma} is below {GAMMA_MIN}, the smallest shape that tables cover; raise it\
+             {remedy}"
+        ),
     }
-    Err(format!(
-        "gamma = {gamma} is below {GAMMA_MIN}, the smallest shape that tables cover; raise it{remedy}"
-    ))
-}
-
-/// The names that others have for sigma: refused, with the relation.
-#[derive(clap::Args)]
-#[allow(dead_code, reason = "no value of these is ever accepted")]
-pub(super) struct OtherNames {
-    #[arg(long, hide = true, value_name = "X", value_parser = other_name("alpha"))]
-    alpha: Option<String>,
-    #[arg(long, hide = true, value_name = "X", value_parser = other_name("roughness"))]
-    roughness: Option<String>,
-    #[arg(short, alias = "m", hide = true, value_name = "X", value_parser = other_name("m"))]
-    m: Option<String>,
-}
-
-fn other_name(word: &str) -> UnknownArgumentValueParser {
-    let hint = did_you_mean_key(word, &["--sigma"]);
-    UnknownArgumentValueParser::suggest(hint.trim_start_matches("; ").replace('`', ""))
-}
-
-/// The parameters of a material, which commands that read recipes do not take as options.
-#[derive(clap::Args)]
-#[allow(dead_code, reason = "no value of these is ever accepted")]
-pub(super) struct InRecipe {
-    #[arg(long, hide = true, value_name = "X", value_parser = in_recipe())]
-    sigma: Option<String>,
-    #[arg(long, hide = true, value_name = "X", value_parser = in_recipe())]
-    gamma: Option<String>,
-    #[arg(long, hide = true, value_name = "X", value_parser = in_recipe())]
-    alpha: Option<String>,
-    #[arg(long, hide = true, value_name = "X", value_parser = in_recipe())]
-    roughness: Option<String>,
-    #[arg(long, hide = true, value_name = "X", value_parser = in_recipe())]
-    theta: Option<String>,
-    #[arg(long, hide = true, value_name = "X", value_parser = in_recipe())]
-    fresnel: Option<String>,
-}
-
-fn in_recipe() -> UnknownArgumentValueParser {
-    UnknownArgumentValueParser::suggest(
-        "materials are described in a file: `microfacet-bake recipe` prints one to start from",
-    )
 }
 
 /// The unit of the angles that a command reads.
@@ -178,30 +151,24 @@ impl Unit {
     }
 
     /// A polar angle in [0, π/2], in radians.
-    pub(super) fn theta(self, x: f64) -> Result<f64, String> {
-        let of =
-            |why| format!("theta = {x} must be an angle {why}, measured from the macro normal");
+    pub(super) fn theta(self, x: f64) -> Result<f64> {
         self.angles().polar(x).map_err(|(why, doubted)| {
-            of(why) + if doubted { "; if it is in degrees, add --degrees" } else { "" }
+            let hint = if doubted { "; if it is in degrees, add --degrees" } else { "" };
+            anyhow!("theta = {x} must be an angle {why}, measured from the macro normal{hint}")
         })
     }
 
     /// Any finite angle, in radians.
-    pub(super) fn phi(self, x: f64) -> Result<f64, String> {
-        if x.is_finite() {
-            Ok(self.angles().to_radians(x))
-        } else {
-            Err(format!("phi = {x} must be a finite angle"))
-        }
+    pub(super) fn phi(self, x: f64) -> Result<f64> {
+        ensure!(x.is_finite(), "phi = {x} must be a finite angle");
+        Ok(self.angles().to_radians(x))
     }
 
     /// What to say of an azimuth that may be in degrees: one of more than a turn.
     pub(super) fn doubt(self, phi: f64) -> Option<String> {
+        let turns = phi.abs() / TAU;
         (!self.degrees && phi.abs() > TAU + 1e-3).then(|| {
-            format!(
-                "phi = {phi} radians is {:.1} turns; if it is in degrees, add --degrees",
-                phi.abs() / TAU
-            )
+            format!("phi = {phi} radians is {turns:.1} turns; if it is in degrees, add --degrees")
         })
     }
 }
@@ -214,10 +181,9 @@ mod tests {
 
     #[test]
     fn numbers_are_checked_against_their_range() {
-        let factor = number(0.5..=2.0, "1 leaves it");
         assert_eq!((factor("0.5"), factor(" 2 ")), (Ok(0.5), Ok(2.0)));
         for bad in ["0.49", "inf", "1e308", "nan", "-1", "", "x"] {
-            assert!(factor(bad).unwrap_err().contains("[0.5, 2]; 1 leaves it"), "{bad}");
+            assert!(factor(bad).unwrap_err().contains("[0.5, 2]; 1 leaves gamma"), "{bad}");
         }
         assert_eq!(finite("-1e300"), Ok(-1e300));
         assert!(["inf", "nan", "x", ""].iter().all(|bad| finite(bad).is_err()));
@@ -262,13 +228,14 @@ mod tests {
     #[test]
     fn angles_that_look_like_degrees_are_doubted() {
         let [radians, degrees] = [false, true].map(|degrees| Unit { degrees });
-        assert_eq!(degrees.theta(90.0), Ok(FRAC_PI_2));
-        assert!(degrees.theta(91.0).unwrap_err().contains("[0, 90] degrees"));
-        // As people type it; a view beyond would lie below the horizon.
+        let refusal = |unit: Unit, theta| unit.theta(theta).unwrap_err().to_string();
+        assert_eq!(degrees.theta(90.0).unwrap(), FRAC_PI_2);
+        assert!(refusal(degrees, 91.0).contains("[0, 90] degrees"));
+        // A rounded π/2; a view beyond would lie below the horizon.
         let quarter = finite("1.5708").unwrap();
-        assert!(quarter > FRAC_PI_2 && radians.theta(quarter) == Ok(FRAC_PI_2));
-        assert!(radians.theta(20.0).unwrap_err().contains("--degrees"));
-        assert!(!radians.theta(-0.1).unwrap_err().contains("--degrees"));
+        assert!(quarter > FRAC_PI_2 && radians.theta(quarter).unwrap() == FRAC_PI_2);
+        assert!(refusal(radians, 20.0).contains("--degrees"));
+        assert!(!refusal(radians, -0.1).contains("--degrees"));
         assert!(radians.theta(f64::NAN).is_err() && radians.phi(f64::INFINITY).is_err());
         assert!(radians.doubt(360.0).is_some_and(|why| why.contains("57.3 turns")));
         assert_eq!((radians.doubt(-TAU), degrees.doubt(360.0)), (None, None));

@@ -2,8 +2,8 @@
 
 use clap::ArgGroup;
 
-use super::report;
 use super::values::{Unit, finite};
+use super::{Result, warn};
 
 /// Options for the direction of a view, next to `--sigma`.
 #[derive(clap::Args)]
@@ -21,10 +21,10 @@ pub(super) struct View {
 
 impl View {
     /// theta and phi in radians; none without a theta. Says so if phi looks like degrees.
-    pub(super) fn angles(&self) -> Result<Option<[f64; 2]>, String> {
+    pub(super) fn angles(&self) -> Result<Option<[f64; 2]>> {
         let Some(theta) = self.theta else { return Ok(None) };
         let angles = [self.unit.theta(theta)?, self.unit.phi(self.phi)?];
-        self.unit.doubt(self.phi).iter().for_each(|why| report("warning", why));
+        self.unit.doubt(self.phi).iter().for_each(warn);
         Ok(Some(angles))
     }
 }

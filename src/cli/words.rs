@@ -34,6 +34,29 @@ pub(super) fn compared(x: f64, with: f64, [less, more]: [&str; 2]) -> String {
     }
 }
 
+/// A line of each of the first items, and one of all others together.
+pub(super) fn first<T>(
+    items: &[T],
+    shown: usize,
+    line: impl FnMut(&T) -> String,
+    others: impl FnOnce(&[T]) -> String,
+) -> String {
+    let (first, more) = items.split_at(shown.min(items.len()));
+    let text: String = first.iter().map(line).collect();
+    if more.is_empty() { text } else { text + &others(more) }
+}
+
+/// The items without repetitions, each where it comes first.
+pub(super) fn distinct<T: PartialEq>(items: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut all = Vec::new();
+    for item in items {
+        if !all.contains(&item) {
+            all.push(item);
+        }
+    }
+    all
+}
+
 /// The first few of a list of names, in quotes.
 pub(super) fn list<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
     const SHOWN: usize = 4;

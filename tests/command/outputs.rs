@@ -2,17 +2,12 @@
 
 use std::fs;
 
-use crate::common::{json, names, ok, refused, run};
-
 use microfacet_baker::store;
 use microfacet_tables::{Errors, Quantity};
 
-const GLASS: &str = include_str!("../../tables/recipes/frosted-glass.toml");
+use crate::common::{Desk, PROGRAM, has, lacks, material, names, ok};
 
-/// A recipe entry of a name and further lines.
-fn material(name: &str, lines: &str) -> String {
-    format!("[[material]]\nname = \"{name}\"\n{lines}\n")
-}
+const GLASS: &str = include_str!("../../tables/recipes/frosted-glass.toml");
 
 fn ggx(name: &str) -> String {
     material(name, "sigma = 0.3\ngamma = 2.0")
@@ -22,14 +17,20 @@ fn smooth(name: &str) -> String {
     material(name, "sigma = 0.0\ngamma = 3.0")
 }
 
-/// A folder with a recipe.
-fn folder(recipe: &str) -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("r.toml"), recipe).unwrap();
-    folder
+/// Distributions that each need tables of their own.
+fn gtr(count: usize) -> String {
+    let one = |i: usize| {
+        material(&format!("{i}"), &format!("distribution = \"gtr\"\nc = 0.2\ngamma = 1.1{i:02}"))
+    };
+    (0..count).map(one).collect()
 }
 
-const DRAFT: [&str; 6] = ["bake", "r.toml", "--quality", "draft", "--out", "out"];
+/// A folder with a recipe.
+fn desk(recipe: &str) -> Desk {
+    Desk::new(&[("r.toml", recipe)])
+}
+
+const DRAFT: &str = "bake r.toml --quality draft --out out";
 
 /// The line that starts so.
 #[track_caller]
@@ -57,33 +58,29 @@ fn next(text: &str) -> Vec<&str> {
 
 #[test]
 fn a_bake_says_what_it_baked_how_well_and_what_to_run_next() {
-    let folder = folder(GLASS);
-    let text = ok(folder.path(), &DRAFT);
+    let desk = desk(GLASS);
+    let text = desk.ok(DRAFT);
     fits(&text);
-    assert_eq!(
-        line(&text, "baked"),
-        "baked    gamma 3             3 tables, for \"frosted glass\""
-    );
-    assert!(line(&text, "skipped").contains("albedo, no fresnel  the recipe states no `fresnel`"));
-    let set = store::read(&folder.path().join("out")).unwrap();
-    let figure = |name: &str, quantity: Quantity| {
+    let baked = "baked    gamma 3             3 tables, for \"frosted glass\"";
+    assert_eq!(line(&text, "baked"), baked);
+    has(line(&text, "skipped"), &["albedo, no fresnel  the recipe states no `fresnel`"]);
+    let set = store::read(&desk.join("out")).unwrap();
+    for (what, name, quantity) in [
+        ("  G1 ", "shadowing_gamma_3", Quantity::G1),
+        ("  CDF of visible normals ", "visible_slope_gamma_3", Quantity::Cdf),
+    ] {
         let table = set.tables().iter().find(|table| table.name == name).unwrap();
-        format!("{:.2e}  in {name}", table.certificate.error(quantity).unwrap())
-    };
-    let g1 = line(&text, "  G1 ");
-    assert!(g1.ends_with(&figure("shadowing_gamma_3", Quantity::G1)), "{text}");
-    let cdf = line(&text, "  CDF of visible normals ");
-    assert!(cdf.ends_with(&figure("visible_slope_gamma_3", Quantity::Cdf)), "{text}");
-    assert!(!text.contains("  albedo  "), "{text}");
-    let bytes = fs::metadata(folder.path().join("out/tables.safetensors")).unwrap().len();
+        let figure = format!("{:.2e}  in {name}", table.certificate.error(quantity).unwrap());
+        assert!(line(&text, what).ends_with(&figure), "{text}");
+    }
+    lacks(&text, &["  albedo  "]);
+    let bytes = fs::metadata(desk.join("out/tables.safetensors")).unwrap().len();
     let wrote = line(&text, "wrote out/tables.safetensors, ");
     assert!(wrote.ends_with(&format!(" kB ({bytes} bytes)")), "{wrote}");
     assert!(line(&text, "3 tables baked, in ").ends_with('s'), "{text}");
     let commands = ["validate", "inspect", "report"];
     assert_eq!(next(&text), commands.map(|command| format!("microfacet-bake {command} out")));
-
-    let again = ok(folder.path(), &DRAFT);
-    line(&again, "all 3 tables came from the cache, in ");
+    line(&desk.ok(DRAFT), "all 3 tables came from the cache, in ");
 }
 
 #[test]
@@ -94,40 +91,33 @@ fn each_material_is_baked_or_skipped_for_a_reason() {
         material("glass", "sigma = 0.4\ngamma = 3.0"),
         material("coat", "sigma = 0.2\ngamma = 3.0\nfresnel = { schlick = 0.04 }"),
     ];
-    let folder = folder(&recipe.concat());
-    let at = folder.path();
-    let text = ok(at, &DRAFT);
+    let desk = desk(&recipe.concat());
+    let text = desk.ok(DRAFT);
     fits(&text);
-    assert!(text.contains("\nskipped  closed form         GGX: "), "{text}");
+    has(&text, &["\nskipped  closed form         GGX: "]);
     assert!(line(&text, "skipped  closed form").ends_with("no tables: \"gold\""), "{text}");
-    assert_eq!(
-        line(&text, "skipped  not rough"),
-        "skipped  not rough           no microfacets: \"mirror\""
-    );
+    let smooth = "skipped  not rough           no microfacets: \"mirror\"";
+    assert_eq!(line(&text, "skipped  not rough"), smooth);
     assert!(line(&text, "baked    gamma 3 ").ends_with("3 tables, for \"glass\", \"coat\""));
     let albedo = text.split_once("\nbaked    albedo              ").unwrap().1;
     let albedo = albedo.split("\nskipped").next().unwrap();
     assert!(albedo.starts_with("gamma 3, sigma 0.2, height-correlated masking"), "{text}");
     assert!(albedo.ends_with("1 table, for \"coat\""), "{text}");
     // The largest error of an albedo is that of its worst moment.
-    let set = store::read(&at.join("out")).unwrap();
+    let set = store::read(&desk.join("out")).unwrap();
     let table = set.tables().iter().find(|table| table.kind.is_albedo()).unwrap();
     let worst = table.certificate.worst();
     assert!(worst > table.certificate.error(Quantity::E).unwrap());
-    assert_eq!(line(&text, "  albedo ").trim(), {
-        let figure = format!("{worst:.2e}");
-        format!("{:22}  {figure}  in {}", "albedo", table.name)
-    });
+    let figure = format!("{:22}  {worst:.2e}  in {}", "albedo", table.name);
+    assert_eq!(line(&text, "  albedo ").trim(), figure);
 
     // A plan says the same of the same materials, and so does the JSON of both.
-    let plan = ok(at, &["plan", "r.toml", "--quality", "draft"]);
+    let plan = desk.ok("plan r.toml --quality draft");
     fits(&plan);
     for skipped in text.lines().filter(|line| line.starts_with("skipped")) {
-        let start = skipped.replacen("skipped", "skip", 1).replacen("  ", " ", 1);
-        let [what, why] = [&skipped[9..27], &skipped[29..50]];
-        assert!(plan.contains(&format!("skip  {what}  {why}")), "{start}: {plan}");
+        has(&plan, &[&format!("skip  {}  {}", &skipped[9..27], &skipped[29..50])]);
     }
-    let [baked, planned] = [json(at, &DRAFT), json(at, &["plan", "r.toml"])];
+    let [baked, planned] = [DRAFT, "plan r.toml"].map(|line| desk.json(line));
     assert_eq!(baked["materials"], planned["materials"]);
     let gold = &baked["materials"][0];
     assert_eq!((&gold["name"], &gold["verdict"]), (&"gold".into(), &"closed form".into()));
@@ -138,90 +128,77 @@ fn each_material_is_baked_or_skipped_for_a_reason() {
 /// A scene says what it holds that is no lobe, once, and not on standard error.
 #[test]
 fn ignored_materials_are_in_the_summary() {
-    let folder = tempfile::tempdir().unwrap();
     let scene = "MakeNamedMaterial \"steel\" \"string type\" \"conductor\" \"float roughness\" 0.04\n\
          MakeNamedMaterial \"wall\" \"string type\" \"diffuse\"\n";
-    fs::write(folder.path().join("r.pbrt"), scene).unwrap();
-    let output = run(folder.path(), &["bake", "r.pbrt", "--out", "out"]);
-    let [text, messages] =
-        [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
-    let skipped = line(&text, "skipped  no lobe");
-    assert!(skipped.ends_with(": \"wall\""), "{text}");
-    assert!(!messages.contains("wall"), "{messages}");
-    let json = json(folder.path(), &["bake", "r.pbrt", "--out", "out"]);
-    assert_eq!(json["ignored"][0]["name"], "wall");
+    let desk = Desk::new(&[("r.pbrt", scene)]);
+    let said = desk.run("bake r.pbrt --out out");
+    assert!(line(&said.out, "skipped  no lobe").ends_with(": \"wall\""), "{}", said.out);
+    lacks(&said.err, &["wall"]);
+    assert_eq!(desk.json("bake r.pbrt --out out")["ignored"][0]["name"], "wall");
 }
 
 #[test]
 fn a_set_of_closed_forms_is_a_set_in_every_format() {
-    let folder = folder(&(ggx("gold") + &ggx("steel")));
-    let at = folder.path();
-    fs::write(at.join("glass.toml"), GLASS).unwrap();
-    ok(at, &["bake", "glass.toml", "--quality", "draft", "--format", "exr", "--out", "out"]);
-    assert_eq!(names(&at.join("out")), ["tables.exr"]);
-    let text = ok(at, &["bake", "r.toml", "--format", "exr", "--out", "out"]);
+    let desk = desk(&(ggx("gold") + &ggx("steel")));
+    desk.write("glass.toml", GLASS);
+    desk.ok("bake glass.toml --quality draft --format exr --out out");
+    assert_eq!(names(&desk.join("out")), ["tables.exr"]);
+    let text = desk.ok("bake r.toml --format exr --out out");
     fits(&text);
-    assert!(text.contains("no tables and so no image; it is in tables.safetensors"), "{text}");
-    assert!(!text.contains("error of"), "{text}");
+    has(&text, &["no tables and so no image; it is in tables.safetensors", "--tabulate-ggx"]);
+    lacks(&text, &["error of", "validate out"]);
     assert_eq!(next(&text)[..2], ["microfacet-bake inspect out", "microfacet-bake report out"]);
-    assert!(!text.contains("validate out") && text.contains("--tabulate-ggx"), "{text}");
     // The old set is gone, and the new one in its place.
-    assert_eq!(names(&at.join("out")), ["tables.safetensors"]);
-    let set = store::read(&at.join("out")).unwrap();
+    assert_eq!(names(&desk.join("out")), ["tables.safetensors"]);
+    let set = store::read(&desk.join("out")).unwrap();
     assert!(set.tables().is_empty() && set.material("gold").is_ok());
-    let shown = ok(at, &["inspect", "out"]);
+    let shown = desk.ok("inspect out");
     fits(&shown);
-    assert!(line(&shown, "holds").contains("no tables"), "{shown}");
+    has(line(&shown, "holds"), &["no tables"]);
     assert!(line(&shown, "normals").ends_with("gamma 2 (GGX) in closed form"), "{shown}");
     // What the default set serves is tested with that.
-    let text = ok(at, &["bake", "glass.toml", "--embedded", "--out", "embedded"]);
-    assert!(text.contains("`microfacet-bake validate` tests that one"), "{text}");
+    let text = desk.ok("bake glass.toml --embedded --out embedded");
+    has(&text, &["`microfacet-bake validate` tests that one"]);
     // A plan has no seconds to compare.
-    let plan = ok(at, &["plan", "r.toml"]);
-    let total = line(&plan, "total: ");
-    assert!(total.contains("no tables to bake; ") && !total.contains("faster"), "{plan}");
+    let plan = desk.ok("plan r.toml");
+    has(line(&plan, "total: "), &["no tables to bake; "]);
+    lacks(line(&plan, "total: "), &["faster"]);
 }
 
 /// Tables that `validate` does not test are shown with their certificates.
 #[test]
 fn a_set_without_a_test_is_inspected() {
-    let folder = folder(&material("coat", "distribution = \"gtr\"\nc = 0.2\ngamma = 1.3"));
-    let text = ok(folder.path(), &DRAFT);
+    let desk = desk(&material("coat", "distribution = \"gtr\"\nc = 0.2\ngamma = 1.3"));
+    let text = desk.ok(DRAFT);
     let commands = ["inspect out --details", "report out"];
     assert_eq!(next(&text)[..2], commands.map(|command| format!("microfacet-bake {command}")));
-    refused(folder.path(), &["validate", "out"]);
+    desk.refuses("validate out", &[]);
     assert!(line(&text, "  D/D(0) ").ends_with("in radial_density_gtr_0.2_1.3"), "{text}");
-    let shown = ok(folder.path(), &["inspect", "out"]);
-    assert!(line(&shown, "materials").contains("\"coat\": gtr:0.2,1.3, height-"), "{shown}");
+    let shown = desk.ok("inspect out");
+    has(line(&shown, "materials"), &["\"coat\": gtr:0.2,1.3, height-"]);
     // Its s means nothing, and is not GGX.
-    assert!(!shown.contains("closed form"), "{shown}");
+    lacks(&shown, &["closed form"]);
 }
 
 #[test]
 fn commands_to_run_next_are_quoted_for_a_shell() {
-    let folder = folder(GLASS);
+    let desk = desk(GLASS);
     let name = "my \"frosted\" glass's";
-    let text = ok(folder.path(), &[&DRAFT[..5], &[name]].concat());
+    let text = ok(desk.path(), &["bake", "r.toml", "--quality", "draft", "--out", name]);
     let quoted = r#"'my "frosted" glass'\''s'"#;
     assert_eq!(next(&text)[1], format!("microfacet-bake inspect {quoted}"));
     assert_eq!(next(&text)[2], format!("microfacet-bake report {quoted}"));
-    let shown = ok(folder.path(), &["inspect", name]);
-    assert_eq!(
-        shown.lines().last(),
-        Some(&format!("microfacet-bake report {quoted} draws the set as a page")[..])
-    );
+    let shown = ok(desk.path(), &["inspect", name]);
+    let last = format!("microfacet-bake report {quoted} draws the set as a page");
+    assert_eq!(shown.lines().last(), Some(&last[..]));
     if cfg!(unix) {
         for command in next(&text) {
-            let pasted = command.replacen("microfacet-bake", "\"$PROGRAM\"", 1);
-            let quick =
-                if pasted.contains("validate") { " --configurations 1 --samples 1000" } else { "" };
-            let status = std::process::Command::new("sh")
-                .args(["-c", &format!("{pasted}{quick}")])
-                .env("PROGRAM", env!("CARGO_BIN_EXE_microfacet-bake"))
-                .current_dir(folder.path())
-                .stdout(std::process::Stdio::null())
-                .status();
-            assert!(status.unwrap().success(), "{pasted}");
+            let pasted = command.replacen("microfacet-bake", "\"$0\"", 1);
+            let few = ["", " --configurations 1 --samples 1000"];
+            let quick = few[usize::from(pasted.contains("validate"))];
+            let mut shell = std::process::Command::new("sh");
+            shell.args(["-c", &format!("{pasted}{quick}"), PROGRAM]).current_dir(desk.path());
+            assert!(shell.output().unwrap().status.success(), "{pasted}");
         }
     }
 }
@@ -233,147 +210,123 @@ fn hundreds_of_materials_stay_readable() {
         1 => smooth(&format!("smooth {i}")),
         _ => material(&format!("brushed {i}"), &format!("sigma = 0.2\ngamma = {}", 3 + i % 2)),
     };
-    let folder = folder(&(0..300).map(each).collect::<String>());
-    for command in [&DRAFT[..], &["plan", "r.toml"]] {
-        let text = ok(folder.path(), command);
+    let desk = desk(&(0..300).map(each).collect::<String>());
+    for command in [DRAFT, "plan r.toml"] {
+        let text = desk.ok(command);
         fits(&text);
         // Twenty materials, and what is done for all.
         assert!(text.lines().count() <= 44, "{text}");
-        assert!(text.contains("and 280 more"), "{text}");
-        let text = flat(&text);
-        assert!(text.contains("\"ggx 0\", \"ggx 3\", \"ggx 6\", \"ggx 9\", 96 more"), "{text}");
-        assert!(text.contains("\"smooth 1\", \"smooth 4\", \"smooth 7\","), "{text}");
-        assert!(text.contains("for \"brushed 5\", \"brushed 11\", "), "{text}");
+        let parts = [
+            "and 280 more",
+            "\"ggx 0\", \"ggx 3\", \"ggx 6\", \"ggx 9\", 96 more",
+            "\"smooth 1\", \"smooth 4\", \"smooth 7\",",
+            "for \"brushed 5\", \"brushed 11\", ",
+        ];
+        has(&flat(&text), &parts);
     }
-    let shown = ok(folder.path(), &["inspect", "out"]);
-    assert!(shown.contains("           and 294 more\n"), "{shown}");
-    let details = ok(folder.path(), &["inspect", "out", "--details"]);
-    assert!(details.contains("           \"brushed 299\": sigma 0.2, gamma 4, "), "{details}");
+    has(&desk.ok("inspect out"), &["           and 294 more\n"]);
+    let details = desk.ok("inspect out --details");
+    has(&details, &["           \"brushed 299\": sigma 0.2, gamma 4, "]);
 
     // Very many table groups are counted.
-    let gtr = |i: usize| {
-        material(&format!("{i}"), &format!("distribution = \"gtr\"\nc = 0.2\ngamma = 1.1{i:02}"))
-    };
-    fs::write(folder.path().join("r.toml"), (0..30).map(gtr).collect::<String>()).unwrap();
-    let text = ok(folder.path(), &["plan", "r.toml"]);
+    desk.write("r.toml", gtr(30));
+    let text = desk.ok("plan r.toml");
     assert!(line(&text, "bake  and 10 more").ends_with("40 tables; --json lists all"), "{text}");
 }
 
 #[test]
 fn a_path_that_is_no_folder_and_options_without_effect_are_refused() {
-    let folder = folder(&ggx("gold"));
-    let at = folder.path();
-    let message = refused(at, &["bake", "r.toml", "--out", "-"]);
-    assert!(message.contains("name a folder, such as --out tables"), "{message}");
-    assert!(!at.join("-").exists());
-    ok(at, &["bake", "r.toml", "--out", "./-"]);
-    let message = refused(at, &["bake", "r.toml", "--out", "out", "--patient"]);
-    assert!(message.contains("--max-error") && message.contains("--max-bytes"), "{message}");
-    ok(at, &["bake", "r.toml", "--out", "out", "--patient", "--max-bytes", "1MB"]);
+    let desk = desk(&ggx("gold"));
+    desk.refuses("bake r.toml --out -", &["name a folder, such as --out tables"]);
+    assert!(!desk.join("-").exists());
+    desk.ok("bake r.toml --out ./-");
+    desk.refuses("bake r.toml --out out --patient", &["--max-error", "--max-bytes"]);
+    desk.ok("bake r.toml --out out --patient --max-bytes 1MB");
 }
 
 #[test]
 fn a_set_is_always_written() {
-    let folder = folder(&smooth("mirror"));
-    let at = folder.path();
-    fs::write(at.join("gold.toml"), ggx("gold")).unwrap();
-    ok(at, &["bake", "gold.toml", "--out", "out"]);
-    let text = ok(at, &["bake", "r.toml", "--out", "out"]);
-    assert!(text.contains("not rough           no microfacets: \"mirror\""), "{text}");
-    assert!(text.contains("no material in use is rough"), "{text}");
+    let desk = desk(&smooth("mirror"));
+    desk.write("gold.toml", ggx("gold"));
+    desk.ok("bake gold.toml --out out");
+    let text = desk.ok("bake r.toml --out out");
+    let parts = ["not rough           no microfacets: \"mirror\"", "no material in use is rough"];
+    has(&text, &parts);
     // The set of the earlier bake is replaced.
-    let set = store::read(&at.join("out")).unwrap();
+    let set = store::read(&desk.join("out")).unwrap();
     let names = set.provenance().materials.iter().map(|material| &material.name[..]);
     assert_eq!((set.tables().len(), names.collect::<Vec<_>>()), (0, vec!["mirror"]));
-    let json = json(at, &["bake", "r.toml", "--out", "out"]);
-    assert_eq!(
-        (&json["baked"], &json["materials"][0]["verdict"]),
-        (&0.into(), &"not rough".into())
-    );
+    let json = desk.json("bake r.toml --out out");
+    let verdict = &json["materials"][0]["verdict"];
+    assert_eq!((&json["baked"], verdict), (&0.into(), &"not rough".into()));
     assert_eq!(json["files"].as_array().unwrap().len(), 1);
     // A scene of which nothing has a lobe too.
-    fs::write(at.join("s.pbrt"), "WorldBegin\nMaterial \"diffuse\"\nShape \"sphere\"\n").unwrap();
-    let text = ok(at, &["bake", "s.pbrt", "--out", "out"]);
-    assert_eq!(store::read(&at.join("out")).unwrap().provenance().materials.len(), 0);
-    let shown = ok(at, &["inspect", "out"]);
-    assert!(shown.contains("materials  none\n"));
+    desk.write("s.pbrt", "WorldBegin\nMaterial \"diffuse\"\nShape \"sphere\"\n");
+    let text = desk.ok("bake s.pbrt --out out");
+    assert_eq!(store::read(&desk.join("out")).unwrap().provenance().materials.len(), 0);
+    let shown = desk.ok("inspect out");
+    has(&shown, &["materials  none\n"]);
     // There is nothing to draw.
-    assert!(!text.contains("report") && !shown.contains("report"), "{text}{shown}");
+    lacks(&(text + &shown), &["report"]);
 }
 
 /// The sampler refuses it as a lobe, so that no table could be read.
 #[test]
 fn a_distribution_that_is_smooth_is_not_baked() {
     let narrow = material("film", "distribution = \"gtr\"\nc = 1e-9\ngamma = 1.3");
-    let folder = folder(&narrow);
-    let at = folder.path();
-    let plan = ok(at, &["plan", "r.toml"]);
-    assert!(!plan.contains("bake  ") && plan.contains("no microfacets: \"film\""), "{plan}");
-    fs::write(at.join("r.toml"), narrow + &ggx("gold")).unwrap();
-    let text = ok(at, &DRAFT);
-    assert!(!text.contains("gtr"), "{text}");
-    assert!(store::read(&at.join("out")).unwrap().material("gold").is_ok());
+    let desk = desk(&narrow);
+    let plan = desk.ok("plan r.toml");
+    has(&plan, &["no microfacets: \"film\""]);
+    lacks(&plan, &["bake  "]);
+    desk.write("r.toml", narrow + &ggx("gold"));
+    lacks(&desk.ok(DRAFT), &["gtr"]);
+    assert!(store::read(&desk.join("out")).unwrap().material("gold").is_ok());
 }
 
 #[test]
 fn a_set_larger_than_the_general_one_is_called_larger() {
-    let gtr = |i: usize| {
-        material(&format!("{i}"), &format!("distribution = \"gtr\"\nc = 0.2\ngamma = 1.1{i:02}"))
-    };
-    let folder = folder(&(0..60).map(gtr).collect::<String>());
-    let plan = ok(folder.path(), &["plan", "r.toml"]);
-    let total = line(&plan, "total: ");
-    assert!(total.contains(" times larger and "), "{plan}");
-    assert!(!plan.contains("0.2 times"), "{plan}");
+    let plan = desk(&gtr(60)).ok("plan r.toml");
+    has(line(&plan, "total: "), &[" times larger and "]);
+    lacks(&plan, &["0.2 times"]);
 }
 
 /// No command advises to bake a shape that `bake` refuses.
 #[test]
 fn a_shape_below_all_tables_is_refused_with_what_helps() {
-    let folder = folder(&material("heavy", "sigma = 0.3\ngamma = 1.5005"));
-    let at = folder.path();
-    let heavy = ["--sigma", "0.3", "--gamma", "1.5005", "--theta", "1"];
-    let sample = ["sample", "--count", "10", "--out", "n.safetensors"];
-    let commands: [&[&str]; 5] = [
-        &[&sample[..], &heavy].concat(),
-        &[&["validate"], &heavy[..]].concat(),
-        &["furnace", "--gamma", "2,1.5005"],
-        &["plan", "r.toml"],
-        &["bake", "r.toml", "--out", "out"],
-    ];
-    for command in commands {
-        let message = refused(at, command);
-        assert!(message.contains("gamma = 1.5005 is below 1.501"), "{command:?}: {message}");
-        assert!(!message.contains("recipe line"), "{command:?}: {message}");
+    let desk = desk(&material("heavy", "sigma = 0.3\ngamma = 1.5005"));
+    let heavy = "--sigma 0.3 --gamma 1.5005 --theta 1";
+    let sample = format!("sample --count 10 --out n.safetensors {heavy}");
+    for line in [
+        &sample[..],
+        &format!("validate {heavy}"),
+        "furnace --gamma 2,1.5005",
+        "plan r.toml",
+        "bake r.toml --out out",
+    ] {
+        lacks(&desk.refuses(line, &["gamma = 1.5005 is below 1.501"]), &["recipe line"]);
     }
-    let message = refused(at, commands[0]);
-    assert!(message.contains("--method exact"), "{message}");
-    ok(at, &[&sample[..], &heavy, &["--method", "exact"]].concat());
+    desk.refuses(&sample, &["--method exact"]);
+    desk.ok(&format!("{sample} --method exact"));
     // What a recipe can state says what tables cover.
-    fs::write(at.join("r.toml"), material("heavy", "sigma = 0.3\ngamma = 1.5")).unwrap();
-    assert!(refused(at, &["plan", "r.toml"]).contains("from 1.501 on"));
+    desk.write("r.toml", material("heavy", "sigma = 0.3\ngamma = 1.5"));
+    desk.refuses("plan r.toml", &["from 1.501 on"]);
 }
 
 #[test]
 fn the_embedded_set_is_shown_in_a_screen_of_words() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = folder.path();
-    let shown = ok(at, &["inspect"]);
+    let desk = Desk::new(&[]);
+    let shown = desk.ok("inspect");
     fits(&shown);
     assert!(shown.lines().count() <= 30, "{shown}");
     assert!(shown.ends_with("\nmicrofacet-bake report draws the set as a page\n"), "{shown}");
     assert!(line(&shown, "set").ends_with("the default set, compiled into the sampler"), "{shown}");
     assert!(line(&shown, "normals").ends_with("gamma 1.501 to inf; every sigma"), "{shown}");
-    assert!(
-        line(&shown, "albedo").contains(
-            "gamma 1.501 to inf, sigma 0 to 3; uncorrelated and height-correlated masking"
-        ),
-        "{shown}"
-    );
-    let details = ok(at, &["inspect", "--details"]);
+    let albedo = "gamma 1.501 to inf, sigma 0 to 3; uncorrelated and height-correlated masking";
+    has(line(&shown, "albedo"), &[albedo]);
+    let details = desk.ok("inspect --details");
     fits(&details);
     assert!(details.starts_with(shown.split("\n--details").next().unwrap()), "{details}");
-    let has = [
+    let parts = [
         "cubic Hermite between them",
         "linear between them",
         "the polynomial of the nearest 4 between them",
@@ -383,15 +336,11 @@ fn the_embedded_set_is_shown_in_a_screen_of_words() {
         "mirrored_root: t = ",
     ];
     let details = flat(&details);
-    for has in has {
-        assert!(details.contains(has), "{has}: {details}");
-    }
+    has(&details, &parts);
     // No word of a programming language, nor a key of the file.
-    for text in [&shown, &details] {
-        for debug in ["F32", "Hermite,", "Lagrange", "{\"", "[1", "_max_error", "worst_"] {
-            assert!(!text.contains(debug), "{debug}: {text}");
-        }
-    }
+    let debug = ["F32", "Hermite,", "Lagrange", "{\"", "[1", "_max_error", "worst_"];
+    lacks(&shown, &debug);
+    lacks(&details, &debug);
     // The certificate's figures are all there.
     let set = microfacet_sampler::Tables::embedded();
     for table in set.tables() {
@@ -399,12 +348,12 @@ fn the_embedded_set_is_shown_in_a_screen_of_words() {
         let of_quantity = |of: &Errors| [Some(of.largest), of.rms, of.outside];
         let errors = certificate.errors.values().flat_map(of_quantity);
         for figure in errors.chain([certificate.quadrature, certificate.stand_in]).flatten() {
-            assert!(details.contains(&format!("{figure:.2e}")), "{} {figure:e}", table.name);
+            has(&details, &[&format!("{figure:.2e}")]);
         }
     }
-    let document = json(at, &["inspect"]);
+    let document = desk.json("inspect");
     assert_eq!(document["tables"].as_array().unwrap().len(), set.tables().len());
     // A checksum is one of a file.
     assert!(document.get("checksum").is_none());
-    refused(at, &["inspect", "--details", "--json"]);
+    desk.refuses("inspect --details --json", &[]);
 }

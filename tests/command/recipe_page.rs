@@ -1,7 +1,5 @@
 //! The page of recipes, and the recipe that the command prints: what they show can be baked.
 
-use std::fs;
-
 use microfacet_baker::distribution::DistributionKind;
 use microfacet_baker::plan::{Options, Plan};
 use microfacet_baker::table_set::{Target, bake};
@@ -9,7 +7,7 @@ use microfacet_baker::table_spec::Quality;
 use microfacet_sampler::{Lobe, Metal};
 use microfacet_tables::Precision;
 
-use crate::common::{ok, refused};
+use crate::common::{Desk, has};
 
 const PAGE: &str = include_str!("../../docs/recipe.md");
 
@@ -25,14 +23,12 @@ fn blocks(language: &str) -> Vec<&'static str> {
 /// Every block is a recipe whose materials are baked, albedos included.
 #[test]
 fn every_example_of_the_page_bakes() {
-    let folder = tempfile::tempdir().unwrap();
     let [csv] = blocks("csv")[..] else { panic!("the page has one CSV") };
-    fs::write(folder.path().join("steel.csv"), csv).unwrap();
+    let desk = Desk::new(&[("steel.csv", csv)]);
     for recipe in blocks("toml") {
-        let path = folder.path().join("recipe.toml");
-        fs::write(&path, recipe).unwrap();
-        let scene =
-            microfacet_scene::load(&path).unwrap_or_else(|why| panic!("{why} in\n{recipe}"));
+        desk.write("recipe.toml", recipe);
+        let scene = microfacet_scene::load(&desk.join("recipe.toml"));
+        let scene = scene.unwrap_or_else(|why| panic!("{why} in\n{recipe}"));
         assert_eq!(scene.warnings, [""; 0], "{recipe}");
         assert_eq!(scene.materials.len(), recipe.matches("[[material]]").count(), "{recipe}");
         let plan = Plan::new(&scene, Options::default()).unwrap();
@@ -79,24 +75,21 @@ fn every_metal_and_its_index_are_on_the_page() {
 
 #[test]
 fn the_recipe_to_start_from_bakes_as_it_is_and_overwrites_nothing() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = folder.path();
-    let printed = ok(at, &["recipe"]);
-    assert_eq!(ok(at, &["recipe", "--out", "mine.toml"]), "mine.toml\n");
-    assert_eq!(fs::read_to_string(at.join("mine.toml")).unwrap(), printed);
-    let bake = ["bake", "mine.toml", "--out", "out", "--quality", "draft", "--no-cache"];
-    let summary = ok(at, &bake);
-    assert!(summary.contains("albedo_") && summary.contains("visible_slope"), "{summary}");
+    let desk = Desk::new(&[]);
+    let printed = desk.ok("recipe");
+    assert_eq!(desk.ok("recipe --out mine.toml"), "mine.toml\n");
+    assert_eq!(desk.read("mine.toml"), printed.as_bytes());
+    let summary = desk.ok("bake mine.toml --out out --quality draft --no-cache");
+    has(&summary, &["albedo_", "visible_slope"]);
 
-    fs::write(at.join("mine.toml"), "mine").unwrap();
-    let message = refused(at, &["recipe", "-o", "mine.toml"]);
-    assert!(message.contains("mine.toml: ") && message.contains("exists"), "{message}");
-    assert_eq!(fs::read_to_string(at.join("mine.toml")).unwrap(), "mine");
-    assert!(refused(at, &["recipe", "-o", "absent/mine.toml"]).contains("absent/mine.toml: "));
+    desk.write("mine.toml", "mine");
+    desk.refuses("recipe -o mine.toml", &["mine.toml: ", "exists"]);
+    assert_eq!(desk.read("mine.toml"), b"mine");
+    desk.refuses("recipe -o absent/mine.toml", &["absent/mine.toml: "]);
 
     // The long help has the keys.
-    let help = ok(at, &["recipe", "--help"]);
+    let help = desk.ok("recipe --help");
     for key in ["name", "sigma", "gamma", "theta", "distribution", "fresnel", "masking"] {
-        assert!(help.contains(&format!("\n  {key:12}  ")), "no {key} in {help}");
+        has(&help, &[&format!("\n  {key:12}  ")]);
     }
 }

@@ -3,15 +3,14 @@
 
 use std::fs;
 use std::os::unix::process::ExitStatusExt;
-use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
 
-use crate::common::{json, ok};
+use crate::common::{Desk, PROGRAM, has, words};
 
-fn start(folder: &Path, args: &[&str]) -> Child {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_microfacet-bake"));
-    command.env("XDG_CACHE_HOME", folder.join("home")).args(args).current_dir(folder);
+fn start(desk: &Desk, line: &str) -> Child {
+    let mut command = Command::new(PROGRAM);
+    command.env("XDG_CACHE_HOME", desk.join("home")).args(words(line)).current_dir(desk.path());
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
@@ -36,8 +35,8 @@ fn message(output: &Output, signal: i32) -> String {
 }
 
 /// The finished tables in the cache.
-fn finished(folder: &Path) -> usize {
-    let entries = fs::read_dir(folder.join("home/microfacet-bake"));
+fn finished(desk: &Desk) -> usize {
+    let entries = fs::read_dir(desk.join("home/microfacet-bake"));
     entries.map_or(0, |entries| {
         let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
         names.filter(|name| name.ends_with(".safetensors")).count()
@@ -45,52 +44,47 @@ fn finished(folder: &Path) -> usize {
 }
 
 /// A bake that takes seconds: of the general set, without albedos.
-const LONG: [&str; 6] = ["bake", "--no-albedo", "--quality", "high", "--out", "new/out"];
+const LONG: &str = "bake --no-albedo --quality high --out";
 
 #[test]
 fn an_interrupted_bake_leaves_nothing_and_goes_on_from_there() {
-    let folder = tempfile::tempdir().unwrap();
-    let child = start(folder.path(), &LONG);
-    let output = interrupt_after(child, "-INT", || finished(folder.path()) > 1);
+    let desk = Desk::new(&[]);
+    let child = start(&desk, &format!("{LONG} new/out"));
+    let output = interrupt_after(child, "-INT", || finished(&desk) > 1);
     let text = message(&output, 2);
     assert!(text.starts_with("interrupted: new/out is as it was; "), "{text}");
-    assert!(text.contains("goes on from there"), "{text}");
+    has(&text, &["goes on from there"]);
     assert!(output.stdout.is_empty());
-    assert!(!folder.path().join("new").exists(), "the folder made for the set is left");
+    assert!(!desk.join("new").exists(), "the folder made for the set is left");
     // Finished tables were kept, and lead to the same set.
-    let resumed = json(folder.path(), &LONG);
+    let resumed = desk.json(&format!("{LONG} new/out"));
     assert!(resumed["baked"].as_u64().unwrap() < 5, "{}", resumed["baked"]);
-    assert_eq!(finished(folder.path()), 1, "one entry replaces those of single tables");
-    ok(folder.path(), &[&LONG[..5], &["fresh", "--no-cache"]].concat());
-    let set = |out: &str| fs::read(folder.path().join(out).join("tables.safetensors")).unwrap();
-    assert!(set("new/out") == set("fresh"));
+    assert_eq!(finished(&desk), 1, "one entry replaces those of single tables");
+    desk.ok(&format!("{LONG} fresh --no-cache"));
+    assert!(desk.read("new/out/tables.safetensors") == desk.read("fresh/tables.safetensors"));
 }
 
 #[test]
 fn an_interrupted_export_leaves_nothing() {
-    let folder = tempfile::tempdir().unwrap();
-    let lut = ["export", "lut", "--gamma-min", "1.6", "--size", "64x64x64", "--format", "dds"];
-    let child = start(folder.path(), &[&lut[..], &["--out", "new/lut"]].concat());
-    let output = interrupt_after(child, "-INT", || folder.path().join("new/lut").exists());
+    let desk = Desk::new(&[]);
+    let lut = "export lut --gamma-min 1.6 --size 64x64x64 --format dds --out new/lut";
+    let output = interrupt_after(start(&desk, lut), "-INT", || desk.join("new/lut").exists());
     let text = message(&output, 2);
     assert!(text.starts_with("interrupted: "), "{text}");
-    assert!(!folder.path().join("new").exists(), "the folder made for the export is left");
+    assert!(!desk.join("new").exists(), "the folder made for the export is left");
 }
 
 #[test]
 fn an_older_set_stays_as_it_was() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("one.toml"), ok(folder.path(), &["recipe"])).unwrap();
-    ok(folder.path(), &["bake", "one.toml", "--out", "out", "--quality", "draft"]);
-    let set = folder.path().join("out/tables.safetensors");
-    let old = fs::read(&set).unwrap();
-    let before = finished(folder.path());
-    let child = start(folder.path(), &[&LONG[..5], &["out"]].concat());
-    let more = || finished(folder.path()) > before;
-    let text = message(&interrupt_after(child, "-TERM", more), 15);
-    assert!(text.contains("interrupted: out is as it was; "), "{text}");
-    assert!(fs::read(&set).unwrap() == old);
-    let entries = fs::read_dir(folder.path().join("out")).unwrap();
+    let desk = Desk::new(&[]);
+    desk.ok("recipe --out one.toml");
+    desk.ok("bake one.toml --out out --quality draft");
+    let (old, before) = (desk.read("out/tables.safetensors"), finished(&desk));
+    let child = start(&desk, &format!("{LONG} out"));
+    let text = message(&interrupt_after(child, "-TERM", || finished(&desk) > before), 15);
+    has(&text, &["interrupted: out is as it was; "]);
+    assert!(desk.read("out/tables.safetensors") == old);
+    let entries = fs::read_dir(desk.join("out")).unwrap();
     assert_eq!(entries.count(), 1, "something is left beside the set");
 }
 
@@ -105,8 +99,8 @@ fn handles(child: u32, signal: u32) -> bool {
 #[test]
 #[cfg(target_os = "linux")]
 fn one_that_waits_for_input_ends_at_once() {
-    let folder = tempfile::tempdir().unwrap();
-    let child = start(folder.path(), &["query", "g1", "--input", "-"]);
+    let desk = Desk::new(&[]);
+    let child = start(&desk, "query g1 --input -");
     let id = child.id();
     // It writes nothing before it has read a line.
     let text = message(&interrupt_after(child, "-INT", || handles(id, 2)), 2);
@@ -116,17 +110,10 @@ fn one_that_waits_for_input_ends_at_once() {
 #[test]
 #[cfg(target_os = "linux")]
 fn what_is_ignored_stays_ignored() {
-    let folder = tempfile::tempdir().unwrap();
-    let program = env!("CARGO_BIN_EXE_microfacet-bake");
-    let script = format!("trap '' HUP; exec '{program}' query g1 --input -");
-    let mut child = Command::new("sh")
-        .args(["-c", &script])
-        .current_dir(folder.path())
-        .stdin(Stdio::piped())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
+    let script = format!("trap '' HUP; exec '{PROGRAM}' query g1 --input -");
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &script]).stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null());
+    let mut child = shell.spawn().unwrap();
     // As under `nohup`.
     while !handles(child.id(), 2) {
         std::thread::sleep(Duration::from_millis(5));

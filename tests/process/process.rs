@@ -9,27 +9,22 @@ use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use microfacet_baker::store;
-use tempfile::TempDir;
 
-const PROGRAM: &str = env!("CARGO_BIN_EXE_microfacet-bake");
+use crate::common::{Desk, PROGRAM, has, material, words};
 
 /// A folder with two recipes whose sets differ in every file.
-fn workshop() -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
+fn workshop() -> Desk {
     // The same tables for materials with other names.
-    for name in ["old", "new"] {
-        let material =
-            |i| format!("[[material]]\nname = \"{name} {i}\"\nsigma = 0.3\ngamma = 3.0\n");
-        let recipe = [1, 2].map(material).concat();
-        fs::write(folder.path().join(format!("{name}.toml")), recipe).unwrap();
-    }
-    folder
+    let recipe = |name: &str| {
+        [1, 2].map(|i| material(&format!("{name} {i}"), "sigma = 0.3\ngamma = 3.0")).concat()
+    };
+    Desk::new(&[("old.toml", &recipe("old")), ("new.toml", &recipe("new"))])
 }
 
-fn bake(workshop: &TempDir, recipe: &str, out: &Path) -> Command {
+fn bake(workshop: &Desk, recipe: &str, out: &Path) -> Command {
     let mut command = Command::new(PROGRAM);
-    command.args(["bake", "--no-cache", "--quality", "draft", "--threads", "1", "--out"]);
-    command.arg(out).arg(workshop.path().join(format!("{recipe}.toml")));
+    command.args(words("bake --no-cache --quality draft --threads 1 --out")).arg(out);
+    command.arg(workshop.join(&format!("{recipe}.toml")));
     command.stdout(Stdio::null()).stderr(Stdio::piped());
     command
 }
@@ -64,8 +59,8 @@ const FORMS: [(&[&str], usize); 3] =
     [(&[], 1), (&["--format", "exr"], 1), (&["--per-set", "1"], 3)];
 
 /// The folder after an undisturbed bake.
-fn baked(workshop: &TempDir, recipe: &str, (form, count): (&[&str], usize)) -> (PathBuf, Files) {
-    let out = workshop.path().join(format!("out of {recipe} {}", form.join(" ")));
+fn baked(workshop: &Desk, recipe: &str, (form, count): (&[&str], usize)) -> (PathBuf, Files) {
+    let out = workshop.join(&format!("out of {recipe} {}", form.join(" ")));
     let output = bake(workshop, recipe, &out).args(form).output().unwrap();
     assert!(output.status.success(), "{}", message(&output));
     let (files, hidden) = content(&out);
@@ -127,7 +122,7 @@ fn beside_two_writers_every_read_finds_a_whole_set() {
     let workshop = workshop();
     let (out, _) = baked(&workshop, "old", FORMS[0]);
     let end = Instant::now() + Duration::from_millis(1500);
-    let cache = workshop.path().join("cache");
+    let cache = workshop.join("cache");
     let (reads, seen) = std::thread::scope(|scope| {
         for (recipe, first) in [("old", 0), ("new", 1)] {
             let (workshop, out, cache) = (&workshop, &out, &cache);
@@ -136,7 +131,7 @@ fn beside_two_writers_every_read_finds_a_whole_set() {
                     let mut command = Command::new(PROGRAM);
                     command.args(["bake", "--quality", "draft", "--threads", "1", "--quiet"]);
                     command.args(["--out".as_ref(), out.as_os_str(), "--cache".as_ref()]);
-                    command.arg(cache).arg(workshop.path().join(format!("{recipe}.toml")));
+                    command.arg(cache).arg(workshop.join(&format!("{recipe}.toml")));
                     let output = command.args(*form).output().unwrap();
                     assert!(output.status.success(), "{}", message(&output));
                     if Instant::now() > end {
@@ -161,7 +156,7 @@ fn beside_two_writers_every_read_finds_a_whole_set() {
 #[test]
 fn a_full_disk_leaves_the_old_set_and_says_so() {
     let workshop = workshop();
-    let recipe = workshop.path().join("new.toml");
+    let recipe = workshop.join("new.toml");
     for form in FORMS {
         let (out, old) = baked(&workshop, "old", form);
         // A limit on the size of files stands for a full disk. Without the trap the kernel kills
@@ -176,8 +171,7 @@ fn a_full_disk_leaves_the_old_set_and_says_so() {
             let (files, hidden) = content(&out);
             assert_eq!(files, old);
             if expected {
-                let text = message(&output);
-                assert!(text.contains("File too large") && text.contains("out of old"), "{text}");
+                has(&message(&output), &["File too large", "out of old"]);
                 assert!(hidden.is_empty(), "{hidden:?}");
             }
         }
@@ -187,11 +181,11 @@ fn a_full_disk_leaves_the_old_set_and_says_so() {
 #[test]
 fn outputs_that_are_no_folders_are_refused_before_baking() {
     let workshop = workshop();
-    let path = |name: &str| workshop.path().join(name);
+    let path = |name: &str| workshop.join(name);
     let refused = |out: &Path, part: &str| {
         let output = bake(&workshop, "old", out).output().unwrap();
         assert_eq!(output.status.code(), Some(2), "{out:?}");
-        assert!(message(&output).contains(part), "{out:?}: {}", message(&output));
+        has(&message(&output), &[part]);
     };
     refused(&path("old.toml"), "is a file");
     refused(&path("old.toml/inside"), "Not a directory");
@@ -213,7 +207,7 @@ fn folders_and_links_in_place_of_files() {
     let workshop = workshop();
     // A link to a folder is followed.
     let (out, old) = baked(&workshop, "old", FORMS[0]);
-    let link = workshop.path().join("link");
+    let link = workshop.join("link");
     std::os::unix::fs::symlink(&out, &link).unwrap();
     assert!(bake(&workshop, "new", &link).output().unwrap().status.success());
     assert_eq!(read(&out), NEW);
@@ -223,10 +217,10 @@ fn folders_and_links_in_place_of_files() {
     fs::create_dir(&file).unwrap();
     let output = bake(&workshop, "old", &out).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
-    assert!(message(&output).contains("tables.safetensors"), "{}", message(&output));
+    has(&message(&output), &["tables.safetensors"]);
     // A link where a file should go is followed.
     fs::remove_dir(&file).unwrap();
-    let elsewhere = workshop.path().join("elsewhere");
+    let elsewhere = workshop.join("elsewhere");
     std::os::unix::fs::symlink(&elsewhere, &file).unwrap();
     assert!(bake(&workshop, "old", &out).output().unwrap().status.success());
     assert!(fs::symlink_metadata(&file).unwrap().is_symlink());
@@ -258,12 +252,12 @@ fn inspecting_a_lie_takes_little_memory() {
         ("large.exr", large, "at most 64 MiB"),
         ("long.safetensors", long_header, "not a valid table set"),
     ] {
-        let path = workshop.path().join(name);
+        let path = workshop.join(name);
         fs::write(&path, bytes).unwrap();
         let script = "ulimit -v 524288; exec \"$0\" inspect \"$1\" --threads 1";
         let output = Command::new("sh").args(["-c", script, PROGRAM]).arg(&path).output().unwrap();
         assert_eq!(output.status.code(), Some(2), "{}", message(&output));
-        assert!(message(&output).contains(part), "{}", message(&output));
+        has(&message(&output), &[part]);
     }
 }
 
@@ -273,27 +267,21 @@ fn inspecting_a_lie_takes_little_memory() {
 fn where_no_threads_can_be_started_one_does_the_work() {
     let workshop = workshop();
     let (_, whole) = baked(&workshop, "old", FORMS[0]);
-    let recipe = workshop.path().join("old.toml");
     for (threads, stack) in [(1, 4_u64 << 30), (8, 600 << 20)] {
         let script = "ulimit -v 2097152; exec \"$0\" \"$@\"";
-        let start = |words: &[&str]| {
+        let start = |line: &str| {
             let mut shell = Command::new("sh");
-            shell
-                .args(["-c", script, PROGRAM])
-                .args(words)
-                .env("RUST_MIN_STACK", stack.to_string());
-            shell.current_dir(workshop.path()).output().unwrap()
+            shell.args(["-c", script, PROGRAM]).args(words(line)).current_dir(workshop.path());
+            shell.env("RUST_MIN_STACK", stack.to_string()).output().unwrap()
         };
-        let options = ["--no-cache", "--quality", "draft"];
-        let out = format!("out of {stack}");
-        let words = ["--threads", &threads.to_string(), "bake", recipe.to_str().unwrap()];
-        let output = start(&[&words[..], &options, &["--out", &out]].concat());
+        let bake = "bake old.toml --no-cache --quality draft --out";
+        let output = start(&format!("--threads {threads} {bake} {stack}"));
         let text = message(&output);
         assert!(output.status.success(), "{text}");
-        assert!(text.contains("warning: threads cannot be started") && text.contains("--threads"));
-        assert!(content(&workshop.path().join(out)).0 == whole, "another set");
+        has(&text, &["warning: threads cannot be started", "--threads"]);
+        assert!(content(&workshop.join(&stack.to_string())).0 == whole, "another set");
         // What divides no work has nothing to warn of.
-        for words in [
+        for line in [
             "recipe",
             "inspect",
             "completions bash",
@@ -301,7 +289,7 @@ fn where_no_threads_can_be_started_one_does_the_work() {
             "plot student-t --out a.svg",
             "sample --sigma 0.3 --gamma 3 --theta 1 --count 9 --out n",
         ] {
-            let output = start(&words.split(' ').collect::<Vec<_>>());
+            let output = start(line);
             assert!(output.status.success() && output.stderr.is_empty(), "{}", message(&output));
         }
     }
@@ -310,22 +298,11 @@ fn where_no_threads_can_be_started_one_does_the_work() {
 #[test]
 fn more_memory_than_allowed_is_refused_with_the_estimate() {
     let workshop = workshop();
-    let wide =
-        "[[material]]\nname = \"any\"\nsigma = 0.3\ngamma = { min = 1.501, max = \"inf\" }\n";
-    fs::write(workshop.path().join("wide.toml"), wide).unwrap();
-    let out = workshop.path().join("out");
-    let output = bake(&workshop, "wide", &out).args(["--max-memory", "1M"]).output().unwrap();
-    assert_eq!(output.status.code(), Some(2), "{}", message(&output));
-    assert!(!out.exists());
-    let text = message(&output);
-    assert!(
-        text.contains("values would take about") && text.contains("more than the 1 MiB allowed"),
-        "{text}"
-    );
-    let output = bake(&workshop, "old", &out).args(["--max-memory", "512X"]).output().unwrap();
-    assert!(
-        message(&output).contains("such as 65536, 10K (10,000), 4GB or 4GiB"),
-        "{}",
-        message(&output)
-    );
+    let wide = material("any", "sigma = 0.3\ngamma = { min = 1.501, max = \"inf\" }");
+    workshop.write("wide.toml", wide);
+    let parts = ["values would take about", "more than the 1 MiB allowed"];
+    workshop.refuses("bake wide.toml --out out --max-memory 1M", &parts);
+    assert!(!workshop.join("out").exists());
+    let sizes = "such as 65536, 10K (10,000), 4GB or 4GiB";
+    workshop.refuses("bake old.toml --out out --max-memory 512X", &[sizes]);
 }

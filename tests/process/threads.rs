@@ -24,8 +24,7 @@ fn the_default_tables_are_the_same_bits_for_any_number_of_threads() {
     for threads in [1, 2, 3, 8] {
         for table in baked(threads) {
             let same = committed.tables().iter().find(|other| other.name == table.name);
-            let same =
-                same.unwrap_or_else(|| panic!("no table {} in the committed set", table.name));
+            let same = same.unwrap_or_else(|| panic!("no table {} in the set", table.name));
             assert!(
                 bits(&table) == bits(same),
                 "{}, {threads} threads; if numbers were meant to change, see tests/files/default_set.rs",

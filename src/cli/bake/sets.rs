@@ -6,12 +6,12 @@ use serde_json::json;
 
 use microfacet_baker::cache::Cache;
 use microfacet_baker::library::{Library, Part};
-use microfacet_baker::store::OutputFolder;
+use microfacet_baker::store::{Format, OutputFolder};
 use microfacet_baker::table_set::bake_with;
 
-use super::{Args, FormatArg, warn_of_cache};
+use super::{Args, files, warn_of_cache};
 use crate::cli::words::{count, exact_bytes, seconds, shell};
-use crate::cli::{Done, Failure, Outcome, escape, print_json, progress, summarize};
+use crate::cli::{Result, ensure, escape, print_json, progress, summarize};
 
 pub(super) fn run(
     args: &Args,
@@ -19,30 +19,27 @@ pub(super) fn run(
     out: OutputFolder,
     cache: Cache,
     start: Instant,
-) -> Outcome {
+) -> Result<()> {
     let sets = library.parts.len();
-    if args.format != FormatArg::Safetensors {
-        return Err(Failure(format!(
-            "--format exr: the materials fill {sets} numbered sets, and an image is of one; leave the \
-             option out"
-        )));
-    }
-    if args.max_bytes.is_some() {
-        return Err(Failure(format!(
-            "--max-bytes is for one set, and the materials fill {sets}; choose --max-error or \
-             --quality instead"
-        )));
-    }
-    for part in &library.parts {
-        args.check_bytes(&part.plan)?;
-    }
+    ensure!(
+        args.format == Format::Safetensors,
+        "--format exr: the materials fill {sets} numbered sets, and an image is of one; leave the \
+         option out"
+    );
+    ensure!(
+        args.max_bytes.is_none(),
+        "--max-bytes is for one set, and the materials fill {sets}; choose --max-error or \
+         --quality instead"
+    );
+    library.parts.iter().try_for_each(|part| args.check_bytes(&part.plan))?;
     let settings = args.settings(cache);
     let bar = progress::show(&settings.progress, "baking");
     let mut writer = out.sets();
-    let (mut tables, mut baked) = (0, 0);
+    let (mut materials, mut tables, mut baked) = (0, 0, 0);
     for Part { plan, .. } in &library.parts {
         let result = bake_with(plan, args.target(), settings.clone())?;
         warn_of_cache(&result);
+        materials += plan.materials.len();
         tables += result.set.tables().len();
         baked += result.baked;
         writer.add(result.set)?;
@@ -50,16 +47,11 @@ pub(super) fn run(
     let written = writer.finish()?;
     drop(bar);
     let time = start.elapsed().as_secs_f64();
-    let materials: usize = library.parts.iter().map(|part| part.plan.materials.len()).sum();
     if args.json {
-        let files = written
-            .iter()
-            .map(|file| json!({ "path": file.path.display().to_string(), "bytes": file.bytes }));
-        print_json(&json!({
+        return print_json(&json!({
             "sets": sets, "materials": materials, "tables": tables, "baked": baked,
-            "files": files.collect::<Vec<_>>(), "seconds": time,
-        }))?;
-        return Ok(Done::Ok);
+            "files": files(&written), "seconds": time,
+        }));
     }
     let bytes = written.iter().map(|file| file.bytes).sum();
     let first = written.first().map_or(String::new(), |file| shell(&file.path));
@@ -75,6 +67,5 @@ pub(super) fn run(
         count(written.len(), "file"),
         exact_bytes(bytes),
         escape::line(&last),
-    ))?;
-    Ok(Done::Ok)
+    ))
 }

@@ -14,12 +14,12 @@ use microfacet_baker::table_set::{Need, Target};
 use super::Args;
 use crate::cli::plan::remind;
 use crate::cli::words::{count, seconds, shell};
-use crate::cli::{Done, Failure, Outcome, interrupt, print_json, progress, report, summarize};
+use crate::cli::{Result, bail, interrupt, note, print_json, progress, summarize, warn};
 
 /// Time between two lines in a log.
 const BETWEEN: Duration = Duration::from_secs(60);
 
-pub(super) fn run(args: &Args, shard: Shard, scene: &Path, folder: &Path) -> Outcome {
+pub(super) fn run(args: &Args, shard: Shard, scene: &Path, folder: &Path) -> Result<()> {
     let start = Instant::now();
     // Fail now rather than after an hour of baking. Kept to the end: other shards use it.
     let _folder = OutputFolder::open(folder)?;
@@ -29,16 +29,14 @@ pub(super) fn run(args: &Args, shard: Shard, scene: &Path, folder: &Path) -> Out
         format!("finished tables are in {kept}, and the same command goes on from there")
     });
     let library = args.library(scene)?;
-    for part in &library.parts {
-        args.check_bytes(&part.plan)?;
-    }
+    library.parts.iter().try_for_each(|part| args.check_bytes(&part.plan))?;
     let needs = library.needs(args.target())?;
     let receipt = Receipt::new(scene, shard, &needs);
     // Said by the first shards, not by each of hundreds.
     let receipts = Receipts::read(folder, scene);
     if !receipts.has(&receipt) {
         for doubt in receipts.strangers(&receipt) {
-            report("warning", format!("{}: {doubt}", folder.display()));
+            warn(format!("{}: {doubt}", folder.display()));
         }
     }
     let all = needs.len();
@@ -50,50 +48,40 @@ pub(super) fn run(args: &Args, shard: Shard, scene: &Path, folder: &Path) -> Out
     let baked = Library::bake(&mine, &settings, |done| {
         // For the log of a scheduler; a terminal has a bar.
         if said.elapsed() >= BETWEEN && !io::stderr().is_terminal() {
-            report("note", format!("shard {shard}: {done} of {}", count(count_of, "need")));
+            note(format!("shard {shard}: {done} of {}", count(count_of, "need")));
             said = Instant::now();
         }
     })?;
     drop(bar);
-    receipt.leave(folder).map_err(|why| Failure(why.to_string()))?;
+    receipt.leave(folder)?;
     let time = start.elapsed().as_secs_f64();
     if args.json {
         print_json(&json!({
             "shard": shard.number, "of": shard.of, "needs": count_of, "needs_of_all": all,
             "baked": baked, "seconds": time,
         }))?;
-        remind(library.plans());
-        return Ok(Done::Ok);
-    }
-    let mut text = format!(
-        "shard {shard}: {} of {all}; {baked} baked, {} from the cache, in {}\n",
-        count(count_of, "need"),
-        count_of - baked,
-        seconds(time)
-    );
-    let when = if shard.of == 1 {
-        "then".into()
     } else {
-        format!("when all {} are done", count(shard.of, "shard"))
-    };
-    text += &format!(
-        "{when}:\n  microfacet-bake bake {}{} --cache {} --out DIR\n",
-        shell(scene),
-        args.repeated(),
-        shell(folder)
-    );
-    summarize(&text)?;
+        let when = match shard.of {
+            1 => "then".into(),
+            all => format!("when all {} are done", count(all, "shard")),
+        };
+        summarize(&format!(
+            "shard {shard}: {} of {all}; {baked} baked, {} from the cache, in {}\n{when}:\n  \
+             microfacet-bake bake {}{} --cache {} --out DIR\n",
+            count(count_of, "need"),
+            count_of - baked,
+            seconds(time),
+            shell(scene),
+            args.repeated(),
+            shell(folder)
+        ))?;
+    }
     remind(library.plans());
-    Ok(Done::Ok)
+    Ok(())
 }
 
 /// Says what a cache lacks where shards were to fill it, and why; with `--only-kept` refuses.
-pub(super) fn check(
-    args: &Args,
-    library: &Library,
-    scene: &Path,
-    cache: &Cache,
-) -> Result<(), Failure> {
+pub(super) fn check(args: &Args, library: &Library, scene: &Path, cache: &Cache) -> Result<()> {
     let Some(folder) = cache.folder() else { return Ok(()) };
     let receipts = Receipts::read(folder, scene);
     // A budget of bytes has no shards, and of a largest error a search alone tells what is there.
@@ -118,13 +106,13 @@ pub(super) fn check(
     );
     let ours = Receipt::new(scene, Shard { number: 1, of: 1 }, &needs);
     for doubt in receipts.doubts(&ours) {
-        report("warning", format!("{}: {doubt}", folder.display()));
+        warn(format!("{}: {doubt}", folder.display()));
     }
     if args.only_kept {
-        return Err(Failure(format!(
+        bail!(
             "{lacks}: run the shards that bake them with the same options, or leave out --only-kept"
-        )));
+        );
     }
-    report("warning", format!("{lacks}; they are baked now"));
+    warn(format!("{lacks}; they are baked now"));
     Ok(())
 }

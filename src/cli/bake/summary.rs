@@ -2,20 +2,21 @@
 
 use std::path::Path;
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use microfacet_baker::plan::Verdict;
 use microfacet_baker::store::Written;
 use microfacet_baker::table_set::Baked;
 use microfacet_report::has_page;
 use microfacet_sampler::Tables;
-use microfacet_tables::{Kind, Table};
+use microfacet_tables::{Axis, Kind, Table};
 use microfacet_validate::configuration::shapes;
 use microfacet_validate::furnace::has_furnace;
 
+use super::files;
 use crate::cli::escape;
 use crate::cli::plan::Outline;
-use crate::cli::words::{columns, count, error, exact_bytes, seconds, shell, wrapped};
+use crate::cli::words::{columns, count, error, exact_bytes, first, seconds, shell, wrapped};
 
 /// A bake that is done.
 pub(super) struct Summary<'a> {
@@ -29,15 +30,6 @@ pub(super) struct Summary<'a> {
     /// Images of single tables were asked for, which are no set.
     pub(super) split: bool,
     pub(super) seconds: f64,
-}
-
-/// The two parts that [`Baked::seconds`] are of.
-const FAMILIES: [&str; 2] = ["visible normals", "albedo"];
-
-/// [`Baked::seconds`] as JSON.
-pub(super) fn families(seconds: [f64; 2]) -> serde_json::Value {
-    let named = FAMILIES.iter().zip(seconds);
-    named.map(|(&name, seconds)| (name.to_owned(), json!(seconds))).collect()
 }
 
 /// Files that are listed; `--json` has them all.
@@ -58,23 +50,15 @@ impl Summary<'_> {
             text += "\nlargest error of\n";
             text += &largest_errors(tables);
         }
-        text += "\n";
-        text += &self.files();
-        text += &self.time();
-        text + "\n" + &self.next()
-    }
-
-    fn files(&self) -> String {
-        let mut text = String::new();
-        for file in self.written.iter().take(SHOWN) {
-            let path = file.path.display().to_string();
-            text += &format!("wrote {}, {}\n", escape::line(&path), exact_bytes(file.bytes));
-        }
-        if let Some(more @ [_, ..]) = self.written.get(SHOWN..) {
+        let wrote = |what: &str, bytes| format!("wrote {what}, {}\n", exact_bytes(bytes));
+        let file =
+            |file: &Written| wrote(&escape::line(&file.path.display().to_string()), file.bytes);
+        let others = |more: &[Written]| {
             let bytes = more.iter().map(|file| file.bytes).sum();
-            text += &format!("wrote {} more, {}\n", count(more.len(), "file"), exact_bytes(bytes));
-        }
-        text
+            wrote(&format!("{} more", count(more.len(), "file")), bytes)
+        };
+        let files = first(self.written, SHOWN, file, others);
+        format!("{text}\n{files}{}\nnext:\n{}", self.time(), self.next())
     }
 
     fn time(&self) -> String {
@@ -90,19 +74,17 @@ impl Summary<'_> {
         };
         let mut text = format!("{what}, in {}", seconds(self.seconds));
         if baked > 0 && !self.outline.albedos().is_empty() {
-            let parts = FAMILIES.iter().zip(result.seconds);
-            let parts: Vec<String> =
-                parts.map(|(name, time)| format!("{name} {}", seconds(time))).collect();
-            text += &format!(" ({})", parts.join(", "));
+            let [normals, albedo] = result.seconds.map(seconds);
+            text += &format!(" (visible normals {normals}, albedo {albedo})");
         }
         text + "\n"
     }
 
-    /// The commands that people run next.
+    /// The commands to run next.
     fn next(&self) -> String {
         let set = &self.result.set;
         if let (true, [image, ..]) = (self.split && !set.tables().is_empty(), self.written) {
-            return format!("next:\n  microfacet-bake inspect {}\n", shell(&image.path));
+            return format!("  microfacet-bake inspect {}\n", shell(&image.path));
         }
         let out = shell(self.out);
         let report = match has_page(set) {
@@ -110,53 +92,44 @@ impl Summary<'_> {
             false => String::new(),
         };
         let inspect = format!("  microfacet-bake inspect {out}\n{report}");
-        let commands = if is_testable(set) {
-            format!("  microfacet-bake validate {out}\n{inspect}")
-        } else if set.tables().is_empty() {
-            let why = if self.outline.has(&Verdict::Embedded) {
-                "the default set serves its materials: `microfacet-bake validate` tests that one"
-            } else if self.outline.has(&Verdict::ClosedForm) {
-                "closed forms have no error to validate; --tabulate-ggx bakes tables instead, for a \
-                 renderer without them"
-            } else if self.outline.is_doubtful() {
-                "no material that was read is rough; warnings name what was not read"
-            } else {
-                "no material in use is rough, so that there is nothing to validate"
-            };
-            inspect + &wrapped("  ", why, 2)
+        if is_testable(set) {
+            return format!("  microfacet-bake validate {out}\n{inspect}");
+        }
+        if !set.tables().is_empty() {
+            let why = "validate has no test for such tables; their certificates are there";
+            let inspect = format!("  microfacet-bake inspect {out} --details\n{report}");
+            return inspect + &wrapped("  ", why, 2);
+        }
+        let why = if self.outline.has(&Verdict::Embedded) {
+            "the default set serves its materials: `microfacet-bake validate` tests that one"
+        } else if self.outline.has(&Verdict::ClosedForm) {
+            "closed forms have no error to validate; --tabulate-ggx bakes tables instead, for a \
+             renderer without them"
+        } else if self.outline.is_doubtful() {
+            "no material that was read is rough; warnings name what was not read"
         } else {
-            format!("  microfacet-bake inspect {out} --details\n{report}")
-                + &wrapped(
-                    "  ",
-                    "validate has no test for such tables; their certificates are there",
-                    2,
-                )
+            "no material in use is rough, so that there is nothing to validate"
         };
-        format!("next:\n{commands}")
+        inspect + &wrapped("  ", why, 2)
     }
 
-    pub(super) fn json(&self) -> serde_json::Value {
-        let Self { result, written, seconds, .. } = self;
+    pub(super) fn json(&self) -> Value {
+        let Self { outline, result, written, seconds, .. } = self;
+        let axis = |axis: &Axis| json!({ "name": axis.name, "length": axis.len() });
         let table = |table: &Table| {
-            let axes: Vec<_> = table
-                .axes
-                .iter()
-                .map(|axis| json!({ "name": axis.name, "length": axis.len() }))
-                .collect();
             json!({
-                "name": table.name, "kind": table.kind.name(), "axes": axes, "precision": table.precision,
+                "name": table.name, "kind": table.kind.name(), "precision": table.precision,
+                "axes": table.axes.iter().map(axis).collect::<Value>(),
                 "certificate": table.certificate,
             })
         };
-        let tables: Vec<_> = result.set.tables().iter().map(table).collect();
-        let files: Vec<_> = written
-            .iter()
-            .map(|file| json!({ "path": file.path.display().to_string(), "bytes": file.bytes }))
-            .collect();
+        let [normals, albedo] = result.seconds;
         json!({
-            "tables": tables, "baked": result.baked, "files": files, "seconds": seconds, "seconds_of": families(result.seconds),
-            "materials": self.outline.materials(), "ignored": self.outline.ignored(), "warnings": self.outline.scene.warnings,
-            "offered": self.outline.offered(),
+            "tables": result.set.tables().iter().map(table).collect::<Value>(),
+            "baked": result.baked, "files": files(written), "seconds": seconds,
+            "seconds_of": { "visible normals": normals, "albedo": albedo },
+            "materials": outline.materials(), "ignored": outline.ignored(),
+            "warnings": outline.scene.warnings, "offered": outline.offered(),
         })
     }
 }

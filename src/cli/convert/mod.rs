@@ -4,42 +4,31 @@ mod table;
 
 use std::fmt::Write;
 
-use clap::ValueEnum;
-
-use microfacet_baker::distribution::{DistributionKind, Named};
-use microfacet_baker::progress::Meter;
+use microfacet_baker::distribution::{DistributionKind, Named as Distribution};
 use microfacet_fit::convert::{ConvertError, Form, Formula, Replacement, Target, by_formula};
 
-use super::{Done, Failure, Outcome, print, progress, values, words};
+use super::values::{self, Named, named};
+use super::{Result, bail, ensure, print, watched, words};
 
 /// How the replacement is chosen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 enum By {
-    /// Equal angle at which D falls to half.
     HalfAngle,
-    /// Least root mean square error over a uniform grid of angles.
     Rmse,
-    /// The published formulas, each by its source, where there are any.
     Formula,
 }
 
-/// The quantity whose error is minimised.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum On {
-    /// D/D(0), the shape of the highlight.
-    Relative,
-    /// D itself.
-    Density,
-}
+const WAYS: [Named<By>; 3] = [
+    ("half-angle", "Equal angle at which D falls to half", By::HalfAngle),
+    ("rmse", "Least root mean square error over a uniform grid of angles", By::Rmse),
+    ("formula", "The published formulas, each by its source, where there are any", By::Formula),
+];
 
-impl From<On> for Form {
-    fn from(on: On) -> Self {
-        match on {
-            On::Relative => Self::Relative,
-            On::Density => Self::Density,
-        }
-    }
-}
+/// The quantity whose error is minimised.
+pub(super) const FORMS: [Named<Form>; 2] = [
+    ("relative", "D/D(0), the shape of the highlight", Form::Relative),
+    ("density", "D itself", Form::Density),
+];
 
 /// Replace one distribution of normals by another, and print how much they differ.
 #[derive(clap::Args)]
@@ -55,14 +44,14 @@ pub(super) struct Args {
     #[arg(long, value_name = "DISTRIBUTION", required_unless_present = "table")]
     to: Option<String>,
     /// Use only this way of choosing; by default all that apply.
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = named(&WAYS))]
     by: Option<By>,
     /// Set the second parameter of a distribution that has two, for `half-angle`.
     #[arg(long, value_name = "X", value_parser = values::finite)]
     shape: Option<f64>,
     /// Quantity whose error `rmse` minimises; `relative` by default.
-    #[arg(long, value_enum)]
-    on: Option<On>,
+    #[arg(long, value_parser = named(&FORMS))]
+    on: Option<Form>,
     /// Print table 2 of Sawicki 2021, the least errors to 17 Beckmanns, ours beside the printed.
     ///
     /// Errors are those of D/D(0) on the grids of the printed table, which end near 4 m; those of
@@ -71,74 +60,68 @@ pub(super) struct Args {
     table: bool,
 }
 
-pub(super) fn run(args: Args) -> Outcome {
-    print(&args.text()?)?;
-    Ok(Done::Ok)
+pub(super) fn run(args: &Args) -> Result<()> {
+    print(&args.text()?)
 }
 
 impl Args {
-    fn form(&self) -> Form {
-        self.on.unwrap_or(On::Relative).into()
-    }
-
-    fn text(&self) -> Result<String, Failure> {
+    fn text(&self) -> Result<String> {
         match (&self.from, &self.to) {
-            (Some(_), Some(to)) if to.contains(':') => {
-                let name = to.split(':').next().unwrap_or(to);
-                Err(format!("--to {to}: give a name alone, {name}; its parameters are found")
-                    .into())
+            (Some(from), Some(to)) => {
+                if let Some((name, _)) = to.split_once(':') {
+                    bail!("--to {to}: give a name alone, {name}; its parameters are found");
+                }
+                self.pair(&from.parse()?, DistributionKind::by_name(to)?)
             }
-            (Some(from), Some(to)) => self.pair(&from.parse()?, DistributionKind::by_name(to)?),
             _ => table::text(),
         }
     }
 
-    fn pair(&self, from: &Named, to: DistributionKind) -> Result<String, Failure> {
-        if self.shape.is_some() && to.parameters().len() < 2 {
-            let why = "--shape is for a distribution of two parameters";
-            return Err(format!("{why}, and {} has one: drop it", to.name()).into());
-        }
-        // An option of a way that is not taken.
+    fn pair(&self, from: &Distribution, to: DistributionKind) -> Result<String> {
+        ensure!(
+            self.shape.is_none() || to.parameters().len() > 1,
+            "--shape is for a distribution of two parameters, and {} has one: drop it",
+            to.name()
+        );
         for (option, given, way) in [
             ("--shape", self.shape.is_some(), By::HalfAngle),
             ("--on", self.on.is_some(), By::Rmse),
         ] {
-            if given && self.by.is_some_and(|by| by != way) {
-                let name = way.to_possible_value().expect("no variant is skipped");
-                let why =
-                    format!("{option} is for --by {} only: drop one of the two", name.get_name());
-                return Err(why.into());
-            }
+            let (name, ..) = WAYS[way as usize];
+            ensure!(
+                !given || self.by.is_none_or(|by| by == way),
+                "{option} is for --by {name} only: drop one of the two"
+            );
         }
         let built = from.build()?;
         let target = Target::new(&*built);
-        let meter = Meter::default();
-        let searches = self.by.is_none_or(|by| by == By::Rmse);
-        let work = if searches { target.seconds(to) } else { 0.0 };
-        meter.expect(work);
-        let _bar = progress::show(&meter, "searching");
-        // What each way gives; the published formulas are several.
-        let replace = |by| match by {
-            By::HalfAngle => vec![target.by_half_angle(to, self.shape).map(Line::plain)],
-            By::Rmse => {
-                let found = target.by_rmse(to, self.form(), &meter.stage(work));
-                vec![found.map(Line::plain)]
-            }
-            By::Formula => match by_formula(from, to) {
-                Ok(all) => all.into_iter().map(|f| Line::of_formula(f, from.values[0])).collect(),
-                Err(e) => vec![Err(e)],
-            },
-        };
-        let ways = By::value_variants().iter();
-        let ways = ways.filter(|by| self.by.is_none_or(|only| only == **by));
+        let is_taken = |way: By| self.by.is_none_or(|by| by == way);
+        let work = if is_taken(By::Rmse) { target.seconds(to) } else { 0.0 };
+        let found: Vec<_> = watched("searching", work, |meter| {
+            // What each way gives; the published formulas are several.
+            let replace = |by| match by {
+                By::HalfAngle => vec![target.by_half_angle(to, self.shape).map(Line::plain)],
+                By::Rmse => {
+                    let form = self.on.unwrap_or(Form::Relative);
+                    vec![target.by_rmse(to, form, &meter.stage(work)).map(Line::plain)]
+                }
+                By::Formula => match by_formula(from, to) {
+                    Ok(all) => {
+                        all.into_iter().map(|f| Line::of_formula(f, from.values[0])).collect()
+                    }
+                    Err(why) => vec![Err(why)],
+                },
+            };
+            let ways = WAYS.iter().filter(|(.., way)| is_taken(*way));
+            ways.flat_map(|(name, _, way)| replace(*way).into_iter().map(move |one| (name, one)))
+                .collect()
+        });
         let mut text = format!(
             "{:<12}{:<40}{:>14}{:>17}  {}\n",
             "by", "replacement", "RMSE of D/D(0)", "RMSE of D, 1/sr", "source"
         );
         let (mut lines, mut refusals) = (0, Vec::new());
-        for (by, result) in ways.flat_map(|by| replace(*by).into_iter().map(move |one| (by, one))) {
-            let way = by.to_possible_value().expect("no variant is skipped");
-            let name = way.get_name();
+        for (name, result) in found {
             match result {
                 Ok(Line { found, remark }) => {
                     let [relative, density] = found.rmse;
@@ -152,16 +135,16 @@ impl Args {
                 Err(ConvertError::NoFormula(..) | ConvertError::ShapeNeeded(_))
                     if self.by.is_none() => {}
                 // Neither does one that fails take the others with it.
-                Err(e) => refusals.push((name.to_owned(), e)),
+                Err(why) => refusals.push((name, why)),
             }
         }
         if lines == 0
-            && let Some((_, e)) = refusals.pop()
+            && let Some((_, why)) = refusals.pop()
         {
-            return Err(e.into());
+            return Err(why.into());
         }
-        for (name, e) in refusals {
-            writeln!(text, "{name:<12}none: {e}")?;
+        for (name, why) in refusals {
+            writeln!(text, "{name:<12}none: {why}")?;
         }
         Ok(text)
     }
@@ -205,8 +188,10 @@ pub(super) fn ends(at: &[&str]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use clap::Parser;
+
+    use super::*;
+    use crate::cli::remedy;
 
     #[derive(Parser)]
     struct Line {
@@ -214,10 +199,11 @@ mod tests {
         args: Args,
     }
 
+    /// What is printed, or why nothing is.
     fn run(line: &str) -> Result<String, String> {
         let words = std::iter::once("convert").chain(line.split(' '));
-        let line = Line::try_parse_from(words).map_err(|e| e.to_string())?;
-        line.args.text().map_err(|Failure(why)| why)
+        let line = Line::try_parse_from(words).map_err(|why| why.to_string())?;
+        line.args.text().map_err(|why| remedy::told(&why))
     }
 
     #[test]
@@ -231,37 +217,41 @@ mod tests {
         let of = |n: &str| format!("{:<24}", format!("blinn-phong:{n}"));
         assert_eq!(rows, ["48.000000", "50.000000", "47.500000"].map(of), "{formulas}");
         assert_eq!(run("--from blinn-phong:50 --to student-t").unwrap().lines().count(), 2);
-        assert!(
-            run("--from gauss:0.1 --to schlick --by formula")
-                .unwrap_err()
-                .contains("no formula is")
-        );
-        assert!(
-            run("--from gauss:0.1 --to student-t --by half-angle").unwrap_err().contains("--shape")
-        );
-        assert!(
-            run("--from ashikhmin-shirley:10,90 --to gauss").unwrap_err().contains("anisotropic")
-        );
-        assert!(run("--from gauss:0.1").is_err());
+        for (line, why) in [
+            ("--from gauss:0.1 --to schlick --by formula", "no formula is"),
+            ("--from gauss:0.1 --to student-t --by half-angle", "--shape"),
+            ("--from ashikhmin-shirley:10,90 --to gauss", "anisotropic"),
+            ("--from gauss:0.1", "--to"),
+            // D of this GGX nowhere falls to half of D(0).
+            ("--from trowbridge-reitz:0.9 --to beckmann --by half-angle", "use rmse"),
+            ("--from gauss:2 --to beckmann --by formula", "eq. 13 gives"),
+            ("--from gauss:2 --to beckmann --by formula", "use half-angle"),
+            // What no double holds.
+            ("--from student-t:1e300,2.5 --to beckmann --by rmse", "too large"),
+            ("--from sawicki:1e300 --to gauss", "too large"),
+        ] {
+            let refusal = run(line).unwrap_err();
+            assert!(refusal.contains(why), "{line}: no {why} in {refusal}");
+        }
     }
 
     #[test]
     fn a_way_that_fails_does_not_take_the_others_with_it() {
-        // D of this GGX nowhere falls to half of D(0).
-        let wide = "--from trowbridge-reitz:0.9 --to beckmann";
-        let all = run(wide).unwrap();
-        assert!(all.contains("rmse        beckmann:0.849") && all.contains("none: "), "{all}");
-        assert!(run(&format!("{wide} --by half-angle")).unwrap_err().contains("use rmse"));
-    }
-
-    #[test]
-    fn formulas_out_of_range_are_named_and_beyond_their_fit_told() {
-        let text = run("--from beckmann:1.2 --to blinn-phong --by formula").unwrap();
-        assert!(text.contains("blinn-phong:1.388889") && text.contains("none: Walter"), "{text}");
-        let wide = run("--from beckmann:0.6 --to gauss --by formula").unwrap();
-        assert!(wide.contains("eq. 13 (fitted to m = 0.004473 to 0.4473)"), "{wide}");
-        let error = run("--from gauss:2 --to beckmann --by formula").unwrap_err();
-        assert!(error.contains("eq. 13 gives") && error.contains("use half-angle"), "{error}");
+        for (line, parts) in [
+            ("trowbridge-reitz:0.9 --to beckmann", ["rmse        beckmann:0.849", "none: "]),
+            (
+                "beckmann:1.2 --to blinn-phong --by formula",
+                ["blinn-phong:1.388889", "none: Walter"],
+            ),
+            // A formula beyond its fit says so.
+            (
+                "beckmann:0.6 --to gauss --by formula",
+                ["eq. 13", "(fitted to m = 0.004473 to 0.4473)"],
+            ),
+        ] {
+            let text = run(&format!("--from {line}")).unwrap();
+            assert!(parts.iter().all(|part| text.contains(part)), "{text}");
+        }
     }
 
     #[test]
@@ -273,20 +263,17 @@ mod tests {
             let found: f64 = text.split("beckmann:").nth(1).unwrap()[..10].trim().parse().unwrap();
             assert!((found / m - 1.0).abs() < 1e-3 && !text.contains("at the end"), "{text}");
         }
-        // Schlick's m is a width like the others'.
-        let schlick = run("--from beckmann:1e-5 --to schlick").unwrap();
-        assert!(!schlick.contains("at the end") && !schlick.contains("none"), "{schlick}");
-        // Two parameters as well; and what no double holds is refused.
-        let narrow = run("--from beckmann:1e-5 --to student-t --by rmse").unwrap();
-        assert!(narrow.contains("student-t:1.0000"), "{narrow}");
-        for too_large in ["student-t:1e300,2.5 --to beckmann --by rmse", "sawicki:1e300 --to gauss"]
-        {
-            let error = run(&format!("--from {too_large}")).unwrap_err();
-            assert!(error.contains("too large"), "{error}");
+        // Schlick's m is a width like the others'; two parameters as well.
+        for (line, part) in [
+            ("beckmann:1e-5 --to schlick", "schlick:"),
+            ("beckmann:1e-5 --to student-t --by rmse", "student-t:1.0000"),
+            ("beckmann:0.2 --to student-t --by rmse", "student-t:"),
+        ] {
+            let text = run(&format!("--from {line}")).unwrap();
+            assert!(text.contains(part) && !text.contains("none"), "{text}");
+            assert!(!text.contains("at the end"), "{text}");
         }
         let flat = run("--from blinn-phong:0 --to gauss --by rmse").unwrap();
         assert!(flat.contains("m at the end of the range searched"), "{flat}");
-        let beckmann = run("--from beckmann:0.2 --to student-t --by rmse").unwrap();
-        assert!(!beckmann.contains("at the end"), "{beckmann}");
     }
 }

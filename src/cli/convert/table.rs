@@ -2,20 +2,15 @@
 
 use std::fmt::Write;
 
-use microfacet_baker::progress::Meter;
 use microfacet_fit::convert::table::{COLUMNS, Value, rows};
 
-use crate::cli::{Failure, progress};
+use crate::cli::{Result, watched};
 
 /// How long the search takes: `microfacet-bake convert --table` on two cores.
 const SECONDS: f64 = 0.6;
 
-pub(super) fn text() -> Result<String, Failure> {
-    let meter = Meter::default();
-    meter.expect(SECONDS);
-    let bar = progress::show(&meter, "searching");
-    let rows = rows(&meter.stage(SECONDS))?;
-    drop(bar);
+pub(super) fn text() -> Result<String> {
+    let rows = watched("searching", SECONDS, |meter| rows(&meter.stage(SECONDS)))?;
     let mut text = format!("{:<8}", "");
     for (name, width) in COLUMNS.iter().zip(WIDTHS) {
         write!(text, "{name:>width$} ")?;
@@ -30,21 +25,17 @@ pub(super) fn text() -> Result<String, Failure> {
     writeln!(text, "{:<17}{:>8}{:>19}{:>10}", "column", "agree", "largest deviation", "at m_B")?;
     let mut agreeing = 0;
     for i in GIVEN..COLUMNS.len() {
-        let column: Vec<Value> = rows.iter().map(|row| row[i]).collect();
-        let agree = column.iter().filter(|value| value.agrees()).count();
+        let agree = rows.iter().filter(|row| row[i].agrees()).count();
         agreeing += agree;
-        let (at, most) = column
-            .iter()
-            .enumerate()
-            .max_by(|a, b| a.1.deviation().abs().total_cmp(&b.1.deviation().abs()))
-            .expect("the table has rows");
+        let off = |row: &Vec<Value>| row[i].deviation().abs();
+        let most = rows.iter().max_by(|a, b| off(a).total_cmp(&off(b)));
+        let most = most.expect("the table has rows");
         let name = match i % 2 {
             0 => format!("{} of {}", COLUMNS[i], COLUMNS[i - 1]),
             _ => COLUMNS[i].into(),
         };
-        let [m, ..] = rows[at][..] else { unreachable!("the table has columns") };
-        let deviation = format!("{:+.3} %", 100.0 * most.deviation());
-        writeln!(text, "{name:<17}{agree:>2} of {}{deviation:>19}{:>10}", rows.len(), m.printed)?;
+        let (deviation, m) = (format!("{:+.3} %", 100.0 * most[i].deviation()), most[0].printed);
+        writeln!(text, "{name:<17}{agree:>2} of {}{deviation:>19}{m:>10}", rows.len())?;
     }
     let values = rows.len() * (COLUMNS.len() - GIVEN);
     writeln!(text, "{:<16}{agreeing} of {values}", "all")?;

@@ -2,20 +2,21 @@
 
 use std::path::PathBuf;
 
-use clap::ValueEnum;
-use clap::builder::PossibleValuesParser;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 
-use microfacet_baker::progress::{Meter, Stage};
+use microfacet_baker::progress::Stage;
 use microfacet_baker::store::OutputFolder;
 use microfacet_export::texture;
 use microfacet_export::texture::engine::{LAYOUTS, Layout};
 use microfacet_export::texture::{
-    BeforeRounding, Channels, Checks, Format, Made, Shapes, TextureSpec, shader_lines,
+    BeforeRounding, Channels, Checks, Deviation, Format, Made, Shapes, TextureSpec, shader_lines,
 };
 use microfacet_sampler::Masking;
+use microfacet_tables::SIGMA_MAX;
 
-use crate::cli::furnace::parse_masking;
-use crate::cli::{Failure, Outcome, progress, report, summarize, values};
+use crate::cli::values::{self, Named, named};
+use crate::cli::words::distinct;
+use crate::cli::{Failure, Result, bail, ensure, note, summarize, watched};
 
 /// Directional albedo and its average as textures that a shader reads in one line.
 #[derive(clap::Args)]
@@ -33,31 +34,29 @@ pub(super) struct Args {
     /// Smallest shape of a range, which ends at infinity; the texture is a volume.
     #[arg(long, value_name = "G", value_parser = values::gamma, conflicts_with_all = ["gamma", "layout"])]
     gamma_min: Option<f64>,
-    #[arg(long, hide = true, value_name = "G", value_parser = values::gamma)]
-    gamma_max: Option<f64>,
     /// Largest roughness, in (0, 3]; 3 by default.
-    #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = values::finite, conflicts_with = "layout")]
+    #[arg(long, value_name = "X", value_parser = values::finite, conflicts_with = "layout")]
     sigma_max: Option<f64>,
     /// Texels along roughness and view, rows and columns of the texture, or along shape, roughness
     /// and view; each in [4, 4096]. By default 64x64, or 32x64x64, or what an engine has.
     #[arg(long, value_name = "SIZE", value_parser = size)]
     size: Option<Size>,
     /// Form of masking: G1(v) G1(l) or 1/(1 + lambda(v) + lambda(l)).
-    #[arg(long, value_parser = parse_masking(), default_value = Masking::HeightCorrelated.name(), conflicts_with = "layout")]
+    #[arg(long, value_parser = values::masking(), default_value = Masking::HeightCorrelated.name(), conflicts_with = "layout")]
     masking: Masking,
     /// What a texel holds.
-    #[arg(long, value_enum, ignore_case = true, default_value_t, conflicts_with = "layout")]
-    channels: ChannelsArg,
+    #[arg(long, value_parser = named(&CHANNELS), ignore_case = true, default_value = "e", conflicts_with = "layout")]
+    channels: Channels,
     /// Formats of files, separated by commas; needed without --layout. A description in JSON is
     /// always written.
-    #[arg(long, value_enum, ignore_case = true, value_delimiter = ',', conflicts_with = "layout")]
-    format: Vec<FormatArg>,
+    #[arg(long, value_parser = named(&FORMATS), ignore_case = true, value_delimiter = ',', conflicts_with = "layout")]
+    format: Vec<Format>,
     /// Round values to 16 bits; c and json hold the rounded numbers.
     #[arg(long, conflicts_with = "layout")]
     half: bool,
     /// Write what an engine reads, in its own form.
-    #[arg(long, value_name = "NAME", ignore_case = true, value_parser = PossibleValuesParser::new(LAYOUTS.iter().map(|layout| layout.name)))]
-    layout: Option<String>,
+    #[arg(long, value_name = "NAME", ignore_case = true, value_parser = layout())]
+    layout: Option<&'static Layout>,
     /// Fit the values of a layout to its filter; by default they are exact at its texels.
     #[arg(long)]
     fit: bool,
@@ -69,63 +68,61 @@ pub(super) struct Args {
     out: PathBuf,
 }
 
-#[derive(Clone, Copy, Default, ValueEnum)]
-enum ChannelsArg {
-    /// E.
-    #[default]
-    E,
-    /// 1 - E, which keeps its digits in 16 bits where little is lost.
-    OneMinusE,
-    /// E and bias - E (1-mu)^5, from which bias and scale = E - bias follow.
-    ScaleBias,
-}
+const CHANNELS: [Named<Channels>; 3] = [
+    ("e", "E", Channels::E),
+    (
+        "one-minus-e",
+        "1 - E, which keeps its digits in 16 bits where little is lost",
+        Channels::OneMinusE,
+    ),
+    (
+        "scale-bias",
+        "E and bias - E (1-mu)^5, from which bias and scale = E - bias follow",
+        Channels::ScaleBias,
+    ),
+];
 
-#[derive(Clone, Copy, ValueEnum)]
-enum FormatArg {
-    /// OpenEXR; the slices of a volume are below each other.
-    Exr,
-    /// DirectDraw Surface with a DX10 header.
-    Dds,
-    /// KTX 2.
-    Ktx2,
-    /// An array of NumPy.
-    Npy,
-    /// A header for C and C++, with a function that reads it.
-    #[value(aliases = ["h"])]
-    C,
-    /// The description, with the values.
-    Json,
-}
+const FORMATS: [Named<Format>; 7] = [
+    ("exr", "OpenEXR; the slices of a volume are below each other", Format::Exr),
+    ("dds", "DirectDraw Surface with a DX10 header", Format::Dds),
+    ("ktx2", "KTX 2", Format::Ktx2),
+    ("npy", "An array of NumPy", Format::Npy),
+    ("c", "A header for C and C++, with a function that reads it", Format::C),
+    ("h", "", Format::C),
+    ("json", "The description, with the values", Format::Json),
+];
 
 /// Texels along each axis.
 #[derive(Clone)]
 struct Size(Vec<usize>);
 
-fn size(text: &str) -> Result<Size, String> {
-    let parts: Option<Vec<usize>> =
-        text.split(['x', 'X']).map(|part| part.trim().parse().ok()).collect();
+fn size(text: &str) -> Result<Size> {
+    let parts: Result<Vec<usize>, _> =
+        text.split(['x', 'X']).map(|part| part.trim().parse()).collect();
     match parts {
-        Some(parts) if (2..=3).contains(&parts.len()) => Ok(Size(parts)),
-        _ => Err(format!(
-            "\"{text}\" must be whole numbers with x between them, as 32x32 or 32x64x64"
-        )),
+        Ok(parts) if (2..=3).contains(&parts.len()) => Ok(Size(parts)),
+        _ => bail!("\"{text}\" must be whole numbers with x between them, as 32x32 or 32x64x64"),
     }
 }
 
-fn name(text: &str) -> Result<String, String> {
+fn name(text: &str) -> Result<String> {
     let good = |c: char| c == '_' || c.is_ascii_lowercase() || c.is_ascii_digit();
-    if !text.starts_with(|c: char| c.is_ascii_lowercase()) || !text.chars().all(good) {
-        return Err(format!(
-            "\"{text}\" must be a name of a-z, 0-9 and _ that begins with a letter, as ggx_albedo"
-        ));
-    }
-    if text.contains("__") || text.ends_with('_') || text.starts_with("gl_") {
-        return Err(format!(
-            "\"{text}\" must be a name without __, _ at its end and gl_ at its start, which C++ and \
-             GLSL reserve, as ggx_albedo"
-        ));
-    }
+    ensure!(
+        text.starts_with(|c: char| c.is_ascii_lowercase()) && text.chars().all(good),
+        "\"{text}\" must be a name of a-z, 0-9 and _ that begins with a letter, as ggx_albedo"
+    );
+    ensure!(
+        !(text.contains("__") || text.ends_with('_') || text.starts_with("gl_")),
+        "\"{text}\" must be a name without __, _ at its end and gl_ at its start, which C++ and \
+         GLSL reserve, as ggx_albedo"
+    );
     Ok(text.into())
+}
+
+/// Parses the name of a layout.
+fn layout() -> impl TypedValueParser<Value = &'static Layout> {
+    PossibleValuesParser::new(LAYOUTS.iter().map(|layout| layout.name))
+        .map(|name| Layout::find(&name.to_lowercase()).expect("one of those listed"))
 }
 
 /// The headers of C: a file of such a name would hide one, as `math.h` from itself.
@@ -133,103 +130,40 @@ const HEADERS: &str = "assert complex ctype errno fenv float inttypes iso646 lim
                        setjmp signal stdalign stdarg stdatomic stdbit stdbool stdckdint stddef \
                        stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype";
 
-impl ChannelsArg {
-    fn channels(self) -> Channels {
-        match self {
-            Self::E => Channels::E,
-            Self::OneMinusE => Channels::OneMinusE,
-            Self::ScaleBias => Channels::ScaleBias,
-        }
-    }
-}
-
-impl FormatArg {
-    fn format(self) -> Format {
-        match self {
-            Self::Exr => Format::Exr,
-            Self::Dds => Format::Dds,
-            Self::Ktx2 => Format::Ktx2,
-            Self::Npy => Format::Npy,
-            Self::C => Format::C,
-            Self::Json => Format::Json,
-        }
-    }
-}
-
-pub(super) fn run(args: Args) -> Outcome {
-    match &args.layout {
-        Some(name) => {
-            of_engine(Layout::find(&name.to_lowercase()).expect("one of those listed"), &args)
-        }
-        None => of_family(&args),
-    }
+pub(super) fn run(args: &Args) -> Result<()> {
+    args.layout.map_or_else(|| of_family(args), |layout| of_engine(layout, args))
 }
 
 /// Textures in our own coordinates.
-fn of_family(args: &Args) -> Outcome {
-    if args.fit {
-        return Err(Failure(
-            "--fit is of a layout: name one with --layout, or leave it out; other textures are \
-             always fitted"
-                .into(),
-        ));
-    }
-    if args.gamma_max.is_some() && args.gamma_min.is_none() {
-        return Err(Failure(
-            "--gamma-max is of no use: a range of shapes goes from --gamma-min to infinity".into(),
-        ));
-    }
-    let shapes = match (args.gamma, args.gamma_min) {
-        (Some(gamma), _) => Shapes::One(gamma),
-        (None, Some(smallest)) => {
-            if let Some(largest) = args.gamma_max.filter(|&largest| largest != f64::INFINITY) {
-                return Err(Failure(if largest <= smallest {
-                    format!(
-                        "--gamma-max {largest} does not lie above --gamma-min {smallest}; a range \
-                             goes from infinity down: leave out --gamma-max"
-                    )
-                } else {
-                    "a range of shapes goes from infinity down: leave out --gamma-max".into()
-                }));
-            }
-            Shapes::DownTo(smallest)
-        }
-        (None, None) => {
-            return Err(Failure(
-                "name a shape with --gamma, a range of them with --gamma-min, or an engine with \
-                 --layout"
-                    .into(),
-            ));
-        }
+fn of_family(args: &Args) -> Result<()> {
+    ensure!(
+        !args.fit,
+        "--fit is of a layout: name one with --layout, or leave it out; other textures are always \
+         fitted"
+    );
+    let (shapes, default): (_, &[usize]) = match (args.gamma, args.gamma_min) {
+        (Some(gamma), _) => (Shapes::One(gamma), &[64, 64]),
+        (None, Some(smallest)) => (Shapes::DownTo(smallest), &[32, 64, 64]),
+        (None, None) => bail!(
+            "name a shape with --gamma, a range of them with --gamma-min, or an engine with \
+             --layout"
+        ),
     };
-    let default = match shapes {
-        Shapes::One(_) => vec![64, 64],
-        Shapes::DownTo(_) => vec![32, 64, 64],
-    };
-    let size = args.size.as_ref().map_or(default, |size| size.0.clone());
-    let sigma_max = args.sigma_max.unwrap_or(microfacet_tables::SIGMA_MAX);
-    texture::check(shapes, sigma_max, &size)?;
-    let channels = args.channels.channels();
-    let specs =
-        TextureSpec::of_shapes(&args.name, shapes, sigma_max, &size, args.masking, channels);
-    let mut formats: Vec<Format> = Vec::new();
-    for format in args.format.iter().map(|format| format.format()) {
-        if !formats.contains(&format) {
-            formats.push(format);
-        }
-    }
-    if formats.is_empty() {
-        return Err(Failure(
-            "name formats with --format, as --format ktx2,npy, or an engine with --layout".into(),
-        ));
-    }
-    if formats.contains(&Format::C) && HEADERS.split(' ').any(|header| header == args.name) {
-        let name = &args.name;
-        return Err(Failure(format!(
-            "--name {name}: {name}.h is a header of C, which this one would hide; take another name, \
-             as {name}_albedo"
-        )));
-    }
+    let size = args.size.as_ref().map_or(default, |size| &size.0);
+    let sigma_max = args.sigma_max.unwrap_or(SIGMA_MAX);
+    texture::check(shapes, sigma_max, size).map_err(Failure::msg)?;
+    let name = &args.name;
+    let specs = TextureSpec::of_shapes(name, shapes, sigma_max, size, args.masking, args.channels);
+    let formats = distinct(args.format.iter().copied());
+    ensure!(
+        !formats.is_empty(),
+        "name formats with --format, as --format ktx2,npy, or an engine with --layout"
+    );
+    ensure!(
+        !formats.contains(&Format::C) || HEADERS.split(' ').all(|header| header != name),
+        "--name {name}: {name}.h is a header of C, which this one would hide; take another name, \
+         as {name}_albedo"
+    );
     let out = OutputFolder::open(&args.out)?;
     note_unfitted(&specs[0]);
     let made = make(&specs, true, |spec, [values, checks]| {
@@ -244,21 +178,16 @@ fn of_family(args: &Args) -> Outcome {
         let before_rounding = Some(BeforeRounding { errors, rounding });
         Ok(Made { texture, errors: rounded, before_rounding })
     })?;
-    let files = texture::files(&formats, &made)?;
-    let done = super::write(&out, &files)?;
-    for made in &made {
-        for error in &made.errors {
-            let (name, quantity) = (&made.texture.spec.name, error.quantity);
-            let (largest, rms) = (error.largest, error.rms);
+    super::write(&out, &texture::files(&formats, &made).map_err(Failure::msg)?)?;
+    for Made { texture, errors, before_rounding } in &made {
+        let name = &texture.spec.name;
+        for error in errors {
+            let (quantity, largest, rms) = (error.quantity, error.largest, error.rms);
             summarize(&format!("{name}: error of {quantity} {largest:.1e}, RMS {rms:.1e}\n"))?;
         }
-        if let Some(before) = &made.before_rounding {
-            let name = &made.texture.spec.name;
-            let before: Vec<String> = before
-                .errors
-                .iter()
-                .map(|error| format!("{} {:.1e}", error.quantity, error.largest))
-                .collect();
+        if let Some(BeforeRounding { errors, .. }) = before_rounding {
+            let one = |error: &Deviation| format!("{} {:.1e}", error.quantity, error.largest);
+            let before: Vec<String> = errors.iter().map(one).collect();
             summarize(&format!("{name}: before rounding to 16 bits {}\n", before.join(", ")))?;
         }
     }
@@ -268,44 +197,38 @@ fn of_family(args: &Args) -> Outcome {
             summarize(&format!("{language}: {line}\n"))?;
         }
     }
-    Ok(done)
+    Ok(())
 }
 
 /// What an engine reads.
-fn of_engine(layout: &Layout, args: &Args) -> Outcome {
+fn of_engine(layout: &Layout, args: &Args) -> Result<()> {
     let gamma = args.gamma.unwrap_or(2.0);
-    let size = args.size.as_ref().map_or(layout.size.to_vec(), |size| size.0.clone());
-    texture::check(Shapes::One(gamma), 1.0, &size)?;
+    let size = args.size.as_ref().map_or(&layout.size[..], |size| &size.0);
+    texture::check(Shapes::One(gamma), 1.0, size).map_err(Failure::msg)?;
     let out = OutputFolder::open(&args.out)?;
     let size = [size[0], size[1]];
+    let ([rows, columns], engine) = (layout.size, layout.engine);
     if size != layout.size {
-        let [rows, columns] = layout.size;
-        report(
-            "note",
-            format!(
-                "the table of {} has {rows}x{columns} texels: change its constants of the size as well",
-                layout.engine
-            ),
-        );
+        note(format!(
+            "the table of {engine} has {rows}x{columns} texels: change its constants of the size \
+             as well"
+        ));
     }
     let specs = layout.specs(gamma, size, args.fit);
     if args.fit {
         note_unfitted(&specs[0]);
     }
     let textures = make(&specs, false, |spec, [values, _]| Ok(spec.make(values)?))?;
-    let done = super::write(&out, &layout.files(&textures)?)?;
-    report("note", format!("{}: {}", layout.engine, layout.advice));
-    Ok(done)
+    super::write(&out, &layout.files(&textures).map_err(Failure::msg)?)?;
+    note(format!("{engine}: {}", layout.advice));
+    Ok(())
 }
 
 /// Says that a texture is too large to fit.
 fn note_unfitted(spec: &TextureSpec) {
     if !spec.fitted {
         let most = texture::MOST_FITTED;
-        report(
-            "note",
-            format!("more than {most} texels: they hold the values there, without a fit"),
-        );
+        note(format!("more than {most} texels: they hold the values there, without a fit"));
     }
 }
 
@@ -313,16 +236,15 @@ fn note_unfitted(spec: &TextureSpec) {
 fn make<T>(
     specs: &[TextureSpec],
     checked: bool,
-    of: impl Fn(&TextureSpec, [&Stage; 2]) -> Result<T, Failure>,
-) -> Result<Vec<T>, Failure> {
-    let meter = Meter::default();
+    of: impl Fn(&TextureSpec, [&Stage; 2]) -> Result<T>,
+) -> Result<Vec<T>> {
     let checks = if checked { 0.5 } else { 0.0 };
     let parts = |spec: &TextureSpec| [1.0, checks].map(|share| share * spec.seconds());
-    specs.iter().flat_map(parts).for_each(|seconds| meter.expect(seconds));
-    let _bar = progress::show(&meter, "baking textures");
-    let one = |spec: &TextureSpec| {
-        let [values, checks] = parts(spec).map(|seconds| meter.stage(seconds));
-        of(spec, [&values, &checks])
-    };
-    specs.iter().map(one).collect()
+    watched("baking textures", specs.iter().flat_map(parts).sum(), |meter| {
+        let one = |spec: &TextureSpec| {
+            let [values, checks] = parts(spec).map(|seconds| meter.stage(seconds));
+            of(spec, [&values, &checks])
+        };
+        specs.iter().map(one).collect()
+    })
 }

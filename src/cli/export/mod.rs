@@ -10,7 +10,7 @@ use clap::Subcommand;
 use microfacet_baker::store::OutputFolder;
 use microfacet_export::{ExportFile, Language, Target};
 
-use super::{Done, Failure, Outcome, summarize};
+use super::{Result, bail, summarize};
 
 /// Write shapes for programs in other languages: tables of one gamma for any roughness, with the
 /// functions that look them up, or albedos as a texture.
@@ -60,30 +60,30 @@ enum TargetArg {
     Other(Vec<OsString>),
 }
 
-pub(super) fn run(args: Args) -> Outcome {
-    let shader = shape::shader;
-    match args.target {
-        TargetArg::C(args) => shape::run(Target::C, args),
-        TargetArg::Wgsl(args) => shader(Language::Wgsl, args),
-        TargetArg::Glsl(args) => shader(Language::Glsl, args),
-        TargetArg::GlslEs(args) => shader(Language::GlslEs, args),
-        TargetArg::Hlsl(args) => shader(Language::Hlsl, args),
-        TargetArg::Msl(args) => shader(Language::Msl, args),
-        TargetArg::Spirv(args) => shader(Language::SpirV, args),
-        TargetArg::Lut(args) => lut::run(args),
+pub(super) fn run(args: Args) -> Result<()> {
+    let (language, args) = match args.target {
+        TargetArg::C(args) => return shape::run(Target::C, &args),
+        TargetArg::Lut(args) => return lut::run(&args),
+        TargetArg::Wgsl(args) => (Language::Wgsl, args),
+        TargetArg::Glsl(args) => (Language::Glsl, args),
+        TargetArg::GlslEs(args) => (Language::GlslEs, args),
+        TargetArg::Hlsl(args) => (Language::Hlsl, args),
+        TargetArg::Msl(args) => (Language::Msl, args),
+        TargetArg::Spirv(args) => (Language::SpirV, args),
         TargetArg::Other(words) => {
             let targets = TargetArg::augment_subcommands(clap::Command::new("export"));
             let names: Vec<&str> = targets.get_subcommands().map(clap::Command::get_name).collect();
             let (word, names) = (words[0].display(), names.join(", "));
-            Err(Failure(format!("\"{word}\" is no target of exports; they are {names}")))
+            bail!("\"{word}\" is no target of exports; they are {names}")
         }
-    }
+    };
+    shape::shader(language, &args)
 }
 
 /// Writes files into a folder and names them.
-fn write(folder: &OutputFolder, files: &[ExportFile]) -> Outcome {
+fn write(folder: &OutputFolder, files: &[ExportFile]) -> Result<()> {
     for file in folder.write_files(files.iter().map(|file| (&file.name[..], &file.contents[..])))? {
         summarize(&format!("{} ({} bytes)\n", file.path.display(), file.bytes))?;
     }
-    Ok(Done::Ok)
+    Ok(())
 }

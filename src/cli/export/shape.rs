@@ -2,28 +2,20 @@
 
 use std::path::PathBuf;
 
-use clap::builder::UnknownArgumentValueParser;
-
 use microfacet_baker::store::OutputFolder;
 use microfacet_export::{Language, Shape, Storage, Target, files, texture_rows};
 use microfacet_tables::SIGMA_MAX;
 
-use crate::cli::{Outcome, report, tables, values};
+use crate::cli::words::distinct;
+use crate::cli::{Result, note, tables, values};
 
 /// What every export of shapes asks for.
 #[derive(clap::Args)]
-#[allow(dead_code, reason = "no value of a roughness is ever accepted")]
 pub(super) struct Args {
     /// Shape in [1.501, inf]; 2 is GGX, inf is Beckmann. Several are separated by commas, or in
     /// options of their own.
     #[arg(long, value_name = "G", required = true, value_delimiter = ',', value_parser = values::gamma)]
     gamma: Vec<f64>,
-    #[arg(long, hide = true, value_name = "X", value_parser = every_sigma())]
-    sigma: Option<String>,
-    #[arg(long, hide = true, value_name = "X", value_parser = every_sigma())]
-    alpha: Option<String>,
-    #[arg(long, hide = true, value_name = "X", value_parser = every_sigma())]
-    roughness: Option<String>,
     /// A table file, or a folder with one; the embedded default if absent.
     #[arg(long)]
     tables: Option<PathBuf>,
@@ -45,36 +37,24 @@ pub(super) struct ShaderArgs {
 /// The size of textures that every device of WebGL 2 has.
 const PROMISED_ROWS: usize = 2048;
 
-fn every_sigma() -> UnknownArgumentValueParser {
-    UnknownArgumentValueParser::suggest(
-        "an export serves every roughness: its functions take sigma as an argument",
-    )
-}
-
-pub(super) fn shader(language: Language, args: ShaderArgs) -> Outcome {
+pub(super) fn shader(language: Language, args: &ShaderArgs) -> Result<()> {
     let storage = if args.textures { Storage::Texture } else { Storage::Buffer };
-    run(Target::Shader(language, storage), args.shapes)
+    run(Target::Shader(language, storage), &args.shapes)
 }
 
-pub(super) fn run(target: Target, args: Args) -> Outcome {
-    args.gamma.iter().try_for_each(|&gamma| values::tabulated(gamma, ""))?;
+pub(super) fn run(target: Target, args: &Args) -> Result<()> {
+    values::tabulated(&args.gamma, "")?;
     let set = tables(args.tables.as_deref())?;
-    let mut gammas: Vec<f64> = Vec::new();
-    for &gamma in &args.gamma {
-        if !gammas.contains(&gamma) {
-            gammas.push(gamma);
-        }
-    }
-    let bind = |&gamma| Shape::bind(&set, gamma);
-    let shapes = gammas.iter().map(bind).collect::<Result<Vec<_>, _>>()?;
+    let gammas = distinct(args.gamma.iter().copied());
+    let shapes: Vec<Shape> =
+        gammas.into_iter().map(|gamma| Shape::bind(&set, gamma)).collect::<Result<_, _>>()?;
     for shape in &shapes {
         for masking in &shape.from_default {
-            let gamma = shape.gamma;
-            let note = format!(
-                "gamma {gamma}: the set has no albedos of {masking} masking for every sigma up to \
-                 {SIGMA_MAX}; those of the default set are written"
-            );
-            report("note", note);
+            note(format!(
+                "gamma {}: the set has no albedos of {masking} masking for every sigma up to \
+                 {SIGMA_MAX}; those of the default set are written",
+                shape.gamma
+            ));
         }
     }
     if let Target::Shader(language, storage) = target
@@ -82,11 +62,10 @@ pub(super) fn run(target: Target, args: Args) -> Outcome {
         && let rows = texture_rows(&shapes)
         && rows > PROMISED_ROWS
     {
-        let note = format!(
+        note(format!(
             "the texture has {rows} rows; all devices of WebGL 2 take {PROMISED_ROWS}: export fewer \
              shapes in one command for others"
-        );
-        report("note", note);
+        ));
     }
     super::write(&OutputFolder::open(&args.out)?, &files(target, &shapes))
 }

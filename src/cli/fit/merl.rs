@@ -1,68 +1,54 @@
 //! `fit --merl`: compares fits to measured materials.
 
-use std::fmt::{Display, Write};
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use microfacet_baker::distribution::DistributionKind;
-use microfacet_baker::progress::Meter;
 use microfacet_fit::merl;
 use microfacet_fit::merl::{Comparison, Fitted, Fitter, Measured};
 
 use crate::cli::convert::ends;
 use crate::cli::recipe::check_new;
 use crate::cli::words::count;
-use crate::cli::{Done, Failure, Outcome, print, progress, remedy, summarize, write, write_file};
+use crate::cli::{Context, Result, is_stream, print, summarize, watched, write, write_file};
 
-pub(super) fn run(files: &[PathBuf], recipe: Option<&Path>) -> Outcome {
-    let prints = recipe.is_some_and(|path| path.as_os_str() == "-");
+pub(super) fn run(files: &[PathBuf], recipe: Option<&Path>) -> Result<()> {
+    let prints = recipe.is_some_and(is_stream);
     let recipe_file = recipe.filter(|_| !prints);
     recipe_file.map_or(Ok(()), check_new)?;
-    let meter = Meter::default();
-    meter.expect(files.len() as f64 * Fitter::SECONDS);
-    let bar = progress::show(&meter, "fitting");
-    let fitter = Fitter::default();
-    let read = |path: &Path| -> Result<Measured, Failure> {
-        let failed = |why: &dyn Display| Failure(format!("{}: {why}", path.display()));
-        Measured::read(path).map_err(|why| failed(&remedy::told(&why)))
-    };
-    // A file that is refused is so before others have taken their time.
-    if files.len() > 1 {
-        for path in files {
-            let failed = |why| Failure(format!("{}: {why}", path.display()));
-            fitter.check(&read(path)?).map_err(failed)?;
-        }
-    }
     let names = merl::names(files.iter().map(PathBuf::as_path));
     let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(8);
-    let mut found = Vec::with_capacity(files.len());
-    for (path, name) in files.iter().zip(&names) {
-        let fits = fitter
-            .fit(&read(path)?, &meter)
-            .map_err(|why| Failure(format!("{}: {why}", path.display())))?;
-        if !prints && found.is_empty() {
-            print(&head(width))?;
+    let work = files.len() as f64 * Fitter::SECONDS;
+    let found = watched("fitting", work, |meter| -> Result<_> {
+        let fitter = Fitter::default();
+        // A file that is refused is so before others have taken their time.
+        for path in files.iter().filter(|_| files.len() > 1) {
+            let check = || fitter.check(&Measured::read(path)?);
+            check().with_context(|| path.display().to_string())?;
         }
-        if !prints {
-            print(&rows(name, width, &fits)?)?;
+        let mut found = Vec::with_capacity(files.len());
+        for (path, name) in files.iter().zip(&names) {
+            let fit = || fitter.fit(&Measured::read(path)?, meter);
+            let fits = fit().with_context(|| path.display().to_string())?;
+            if !prints {
+                let head = if found.is_empty() { head(width) } else { String::new() };
+                print(&(head + &rows(name, width, &fits)?))?;
+            }
+            found.push(fits);
         }
-        found.push(fits);
-    }
-    drop(bar);
+        Ok(found)
+    })?;
     if !prints && found.len() > 1 {
         print(&summary(&found)?)?;
     }
-    if recipe.is_some() {
-        let fits = names.iter().zip(&found).map(|(name, fits)| (&**name, &fits.student_t));
-        let text = merl::recipe(fits);
-        match recipe_file {
-            None => write(text.as_bytes())?,
-            Some(path) => {
-                write_file(path, text.as_bytes())?;
-                summarize(&format!("{}\n", path.display()))?;
-            }
-        }
+    if recipe.is_none() {
+        return Ok(());
     }
-    Ok(Done::Ok)
+    let text =
+        merl::recipe(names.iter().zip(&found).map(|(name, fits)| (&**name, &fits.student_t)));
+    let Some(path) = recipe_file else { return write(text.as_bytes()) };
+    write_file(path, text.as_bytes())?;
+    summarize(&format!("{}\n", path.display()))
 }
 
 fn head(width: usize) -> String {

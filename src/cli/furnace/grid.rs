@@ -1,10 +1,11 @@
 //! The materials that a furnace runs: those named, and else what the set covers of a grid.
 
 use microfacet_sampler::{Masking, Tables};
-use microfacet_tables::{Interval, Kind};
+use microfacet_tables::{Interval, Kind, LobeSpec};
 use microfacet_validate::furnace::domains;
 
-use crate::cli::{Failure, report};
+use crate::cli::words::distinct;
+use crate::cli::{Result, anyhow, note};
 
 const SIGMAS: [f64; 7] = [0.01, 0.1, 0.3, 0.6, 1.0, 2.0, 3.0];
 const GAMMAS: [f64; 8] = [1.501, 1.6, 2.0, 3.0, 5.0, 10.0, 40.0, f64::INFINITY];
@@ -19,7 +20,7 @@ pub(super) fn materials(
     masking: Masking,
     sigmas: &[f64],
     gammas: &[f64],
-) -> Result<Vec<(f64, f64)>, Failure> {
+) -> Result<Vec<(f64, f64)>> {
     let product = |sigmas: &[f64], gammas: &[f64]| -> Vec<(f64, f64)> {
         gammas.iter().flat_map(|&g| sigmas.iter().map(move |&s| (s, g))).collect()
     };
@@ -27,17 +28,16 @@ pub(super) fn materials(
         return Ok(product(sigmas, gammas));
     }
     let is_covered = |&(s, g): &(f64, f64)| set.albedo(s, g, masking).is_ok();
-    let mut all: Vec<(f64, f64)> = Vec::new();
-    for domain in domains(set, masking) {
-        let sigmas =
-            if sigmas.is_empty() { &within(&SIGMAS, domain.roughness.x()) } else { sigmas };
-        let gammas = if gammas.is_empty() { &within(&GAMMAS, domain.gamma) } else { gammas };
-        for pair in product(sigmas, gammas).into_iter().filter(is_covered) {
-            if !all.contains(&pair) {
-                all.push(pair);
-            }
-        }
-    }
+    let domains = domains(set, masking);
+    let of_domain = |domain: &LobeSpec| {
+        let or = |named: &[f64], grid: &[f64], range| match named {
+            [] => within(grid, range),
+            named => named.to_vec(),
+        };
+        let sigmas = or(sigmas, &SIGMAS, domain.roughness.x());
+        product(&sigmas, &or(gammas, &GAMMAS, domain.gamma))
+    };
+    let mut all = distinct(domains.iter().flat_map(of_domain).filter(is_covered));
     // Stable: several tables of one γ keep their order.
     all.sort_by(|a, b| a.1.total_cmp(&b.1));
     // What is named and not covered is an error, and so is a set without albedos.
@@ -48,22 +48,20 @@ pub(super) fn materials(
         let gamma = *lost_gamma.or(gammas.first()).unwrap_or(&GAMMAS[3]);
         let others = || set.tables().iter().any(|table| table.kind == Kind::Albedo);
         return Err(match set.albedo(sigma, gamma, masking) {
-            Err(_) if domains(set, masking).is_empty() && others() => Failure(format!(
-                "this set has no {masking} albedos of isotropic materials, which a furnace reads; `microfacet-bake inspect` shows those \
-                 it has and their errors"
-            )),
+            Err(_) if domains.is_empty() && others() => anyhow!(
+                "this set has no {masking} albedos of isotropic materials, which a furnace reads; \
+                 `microfacet-bake inspect` shows those it has and their errors"
+            ),
             Err(why) => why.into(),
-            Ok(_) => Failure("no material of the grid is covered: give --sigma and --gamma".into()),
+            Ok(_) => anyhow!("no material of the grid is covered: give --sigma and --gamma"),
         });
     }
     if sigmas.is_empty() && gammas.is_empty() && all != product(&SIGMAS, &GAMMAS) {
-        report(
-            "note",
-            format!(
-                "these tables cover a part of the grid, or none: {} materials are run; name others with --sigma and --gamma",
-                all.len()
-            ),
-        );
+        let count = all.len();
+        note(format!(
+            "these tables cover a part of the grid, or none: {count} materials are run; name \
+             others with --sigma and --gamma"
+        ));
     }
     Ok(all)
 }

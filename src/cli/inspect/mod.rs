@@ -9,10 +9,12 @@ use microfacet_report::words::certificate;
 use microfacet_report::words::material::material;
 use microfacet_report::words::table::{albedos, covers, holds, normals, precision};
 use microfacet_sampler::Tables;
-use microfacet_tables::{Table, describe};
+use microfacet_tables::{MaterialEntry, Table, describe};
 
-use super::words::{COLUMNS, bytes, columns, count, error, exact_bytes, shell, wrapped};
-use super::{Done, Outcome, escape, print, print_json, tables};
+use super::words::{
+    COLUMNS, bytes, columns, count, distinct, error, exact_bytes, first, shell, wrapped,
+};
+use super::{Result, escape, print, print_json, tables};
 
 /// Show what a set of tables serves, and the size and the largest error of each table.
 #[derive(clap::Args)]
@@ -34,7 +36,7 @@ const HEAD: usize = 11;
 /// Materials and ranges that the head lists.
 const SHOWN: usize = 6;
 
-pub(super) fn run(args: Args) -> Outcome {
+pub(super) fn run(args: &Args) -> Result<()> {
     let set = tables(args.tables.as_deref())?;
     if args.json {
         let mut document: serde_json::Value =
@@ -43,8 +45,7 @@ pub(super) fn run(args: Args) -> Outcome {
         if let Some(document) = document.as_object_mut() {
             document.remove("checksum");
         }
-        print_json(&document)?;
-        return Ok(Done::Ok);
+        return print_json(&document);
     }
     let name: String = match &args.tables {
         Some(path) => escape::line(&path.display().to_string()).into(),
@@ -56,17 +57,14 @@ pub(super) fn run(args: Args) -> Outcome {
         text += &overview(set.tables());
     }
     if args.details {
-        text += &details::of(&set);
-    } else {
-        text += "\n--details shows axes, certificates, conventions and the recipe\n";
-        if has_page(&set) {
-            let path =
-                args.tables.as_deref().map_or(String::new(), |path| format!(" {}", shell(path)));
-            text += &format!("microfacet-bake report{path} draws the set as a page\n");
-        }
+        return print(&(text + &details::of(&set)));
     }
-    print(&text)?;
-    Ok(Done::Ok)
+    text += "\n--details shows axes, certificates, conventions and the recipe\n";
+    if has_page(&set) {
+        let path = args.tables.as_deref().map_or(String::new(), |path| format!(" {}", shell(path)));
+        text += &format!("microfacet-bake report{path} draws the set as a page\n");
+    }
+    print(&text)
 }
 
 fn entry(name: &str, text: &str) -> String {
@@ -82,13 +80,7 @@ fn head(name: &str, set: &Tables, all: bool) -> String {
     text += &entry("baked by", &format!("{generator}, numerics {}{licence}", origin.numerics));
     let tables = set.tables();
     let size = tables.iter().map(Table::stored_bytes).sum();
-    let mut forms: Vec<&str> = Vec::new();
-    for table in tables {
-        let form = precision(table.precision);
-        if !forms.contains(&form) {
-            forms.push(form);
-        }
-    }
+    let forms = distinct(tables.iter().map(|table| precision(table.precision)));
     let values = match tables {
         [] if origin.materials.is_empty() => "no tables".to_owned(),
         [] => "no tables: its materials have closed forms, or tables of another set".to_owned(),
@@ -101,16 +93,12 @@ fn head(name: &str, set: &Tables, all: bool) -> String {
     };
     text += &entry("holds", &values);
     let shown = if all { usize::MAX } else { SHOWN };
-    for (i, entry) in origin.materials.iter().take(shown).enumerate() {
-        let first = if i == 0 { "materials" } else { "" };
-        let name = escape::line(&entry.name);
-        text += &self::entry(first, &format!("\"{name}\": {}", escape::line(&material(entry))));
-    }
-    match origin.materials.len() {
-        0 if tables.is_empty() => text += &entry("materials", "none"),
-        0 => text += &entry("materials", "none by name; any in these ranges"),
-        n if n > shown => text += &entry("", &format!("and {} more", n - shown)),
-        _ => {}
+    let name = |entry: &MaterialEntry| format!("\"{}\": {}", entry.name, material(entry));
+    let materials: Vec<String> = origin.materials.iter().map(name).collect();
+    text += &listed("materials", &materials, shown);
+    if materials.is_empty() {
+        let none = if tables.is_empty() { "none" } else { "none by name; any in these ranges" };
+        text += &entry("materials", none);
     }
     text += &listed("normals", &normals(set), shown);
     text + &listed("albedo", &albedos(tables), shown)
@@ -118,45 +106,32 @@ fn head(name: &str, set: &Tables, all: bool) -> String {
 
 /// A list below each other, its end cut off.
 fn listed(name: &str, lines: &[String], shown: usize) -> String {
-    let mut text = String::new();
-    for (i, line) in lines.iter().take(shown).enumerate() {
-        text += &entry(if i == 0 { name } else { "" }, &escape::line(line));
-    }
-    if lines.len() > shown {
-        text += &entry("", &format!("and {} more", lines.len() - shown));
-    }
-    text
+    let mut name = Some(name);
+    let line = |line: &String| entry(name.take().unwrap_or(""), &escape::line(line));
+    first(lines, shown, line, |more| entry("", &format!("and {} more", more.len())))
 }
 
 /// One line for each table, under what it holds.
 fn overview(tables: &[Table]) -> String {
     let header = ["", "gamma", "sigma", "nodes", "type", "size", "error"].map(String::from);
     let mut rows: Vec<Vec<String>> = vec![header.into()];
-    let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
-    for table in tables {
-        let what = holds(table);
-        match groups.iter_mut().find(|(known, _)| *known == what) {
-            Some((_, group)) => group.push(rows.len()),
-            None => groups.push((what, vec![rows.len()])),
-        }
-        rows.push(row(table));
-    }
+    rows.extend(tables.iter().map(row));
     let mut lines = columns(&rows);
     if lines.iter().any(|line| line.chars().count() > COLUMNS) {
         // Long names have a line of their own.
         let names: Vec<String> = rows.iter_mut().map(|row| std::mem::take(&mut row[0])).collect();
         rows.iter_mut().for_each(|row| row[0] = "  ".into());
         lines = columns(&rows);
-        let below = |(name, line): (&String, &String)| format!("{name}\n{line}");
-        let named: Vec<String> = names.iter().zip(&lines).skip(1).map(below).collect();
-        lines.truncate(1);
-        lines.extend(named);
+        for (name, line) in names.iter().zip(&mut lines).skip(1) {
+            *line = format!("{name}\n{line}");
+        }
     }
     let mut text = format!("{}\n", lines[0]);
-    for (what, rows) in groups {
-        text += &wrapped("", &escape::line(&what), 2);
-        for i in rows {
-            text += &format!("{}\n", lines[i]);
+    let held: Vec<String> = tables.iter().map(holds).collect();
+    for what in distinct(&held) {
+        text += &wrapped("", &escape::line(what), 2);
+        for (_, line) in held.iter().zip(&lines[1..]).filter(|(held, _)| *held == what) {
+            text += &format!("{line}\n");
         }
     }
     text

@@ -30,14 +30,15 @@ pub(super) fn run(args: &Args) -> Result {
     let request: &Request = &args.request;
     // Of folders below, the summary says which could not be read.
     let folder = args.scene.display();
-    read_dir(&args.scene).map_err(|why| Failure(format!("{folder}: cannot be read: {why}")))?;
+    read_dir(&args.scene)
+        .map_err(|why| Failure::msg(format!("{folder}: cannot be read: {why}")))?;
     let target = Target::Quality(request.quality(), request.precision());
     let meter = Meter::default();
     let bar = progress::show(&meter, "reading scenes");
     let survey = Survey::new(&args.scene, request.planning()?, target, &meter);
     drop(bar);
     if survey.files.is_empty() {
-        return Err(Failure(format!(
+        return Err(Failure::msg(format!(
             "{}: no file in this folder is named as a scene: .toml, .pbrt, .pbrt.gz, .xml, .gltf, \
              .glb, .mtlx; hidden files and links are passed over",
             args.scene.display()

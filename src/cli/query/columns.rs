@@ -6,27 +6,29 @@ use csv::StringRecord;
 
 use microfacet_baker::scene::did_you_mean_key;
 
+use crate::cli::{Result, bail};
+
 /// Where the columns `inputs` are in a header, to which the columns `outputs` are appended.
 pub(super) fn find(
     header: &StringRecord,
     inputs: &[&str],
     outputs: &[String],
-) -> Result<Vec<usize>, String> {
+) -> Result<Vec<usize>> {
     let mut seen = HashSet::new();
     // Columns without a name, as spreadsheets leave them at the end, may be several.
     if let Some(twice) = header.iter().find(|name| !name.is_empty() && !seen.insert(*name)) {
-        return Err(format!("two columns have the name `{twice}`; rename or remove one of them"));
+        bail!("two columns have the name `{twice}`; rename or remove one of them");
     }
     if let Some(output) = outputs.iter().find(|name| seen.contains(&name[..])) {
-        return Err(format!(
+        bail!(
             "there is a column `{output}` already, and the results would be another; rename or \
              remove it"
-        ));
+        );
     }
     inputs.iter().map(|name| position(header, name, inputs)).collect()
 }
 
-fn position(header: &StringRecord, name: &str, inputs: &[&str]) -> Result<usize, String> {
+fn position(header: &StringRecord, name: &str, inputs: &[&str]) -> Result<usize> {
     if let Some(position) = header.iter().position(|column| column == name) {
         return Ok(position);
     }
@@ -36,9 +38,6 @@ fn position(header: &StringRecord, name: &str, inputs: &[&str]) -> Result<usize,
         .map(|column| (column, did_you_mean_key(column, &[name])))
         .find(|(_, hint)| !hint.is_empty())
         .map_or(String::new(), |(column, hint)| format!("; for `{column}`{}", &hint[1..]));
-    Err(format!(
-        "no column `{name}`; the columns are {}, the file has {}{hint}",
-        inputs.join(", "),
-        have.join(", ")
-    ))
+    let (inputs, have) = (inputs.join(", "), have.join(", "));
+    bail!("no column `{name}`; the columns are {inputs}, the file has {have}{hint}")
 }

@@ -3,20 +3,18 @@
 mod columns;
 mod quantities;
 
-use std::fmt::Display;
-
 use std::path::PathBuf;
 
 use clap::{Subcommand, ValueEnum};
+use csv::{StringRecord, Writer};
 use rayon::prelude::*;
 
 use microfacet_baker::input::rows::{Row, RowError, Rows};
 use microfacet_baker::input::{MAX_ROW, open_or_stdin, shown};
-use microfacet_baker::progress::Meter;
 
 use super::values::Unit;
-use super::{Done, Failure, Outcome, interrupt, progress, report, tables, write_on};
-use quantities::{Albedo, AlbedoAverage, G1, Known, Normal, Quantity};
+use super::{Context, Result, interrupt, is_stream, note, tables, warn, watched, write_on};
+use quantities::{Known, Quantity};
 
 /// Append table and exact values to the points of a CSV file.
 #[derive(clap::Args)]
@@ -71,13 +69,15 @@ enum Method {
     Exact,
 }
 
-pub(super) fn run(args: Args) -> Outcome {
-    match &args.what {
-        What::G1(view) => answer(&view.io, &G1(view.unit)),
-        What::Normal(view) => answer(&view.io, &Normal(view.unit)),
-        What::Albedo(io) => answer(io, &Albedo),
-        What::AlbedoAverage(io) => answer(io, &AlbedoAverage),
-    }
+pub(super) fn run(args: &Args) -> Result<()> {
+    let (io, unit, quantity) = match &args.what {
+        What::G1(view) => (&view.io, view.unit, Quantity::G1),
+        What::Normal(view) => (&view.io, view.unit, Quantity::Normal),
+        What::Albedo(io) => (io, Unit::default(), Quantity::Albedo),
+        What::AlbedoAverage(io) => (io, Unit::default(), Quantity::AlbedoAverage),
+    };
+    let known = Known::new(quantity, unit, tables(io.tables.as_deref())?);
+    answer(io, quantity, &known)
 }
 
 /// Rows that are computed at once, on all cores, and the bytes of input after which fewer are.
@@ -88,92 +88,83 @@ const BYTES: u64 = 2 * MAX_ROW;
 const SECONDS: f64 = 1e-6;
 
 /// Passes the rows of a file through, with the quantity's values appended.
-fn answer(io: &Io, quantity: &dyn Quantity) -> Outcome {
-    let known = Known::new(tables(io.tables.as_deref())?);
-    let path = shown(&io.input);
-    let failed = |why: &dyn Display| Failure(format!("{path}: {why}"));
+fn answer(io: &Io, quantity: Quantity, known: &Known) -> Result<()> {
+    let path = || shown(&io.input).to_string();
     // A stream of any length, as long as its rows end.
-    let input = open_or_stdin(&io.input, u64::MAX).map_err(|why| failed(&why))?;
-    let mut rows = Rows::new(input, None).map_err(|why| failed(&why))?;
-    let empty = || failed(&"it is empty; the first row must name the columns");
-    let header = rows.read().map_err(|why| failed(&why))?.ok_or_else(empty)?.fields;
-    let names: Vec<String> = io.method.iter().flat_map(|m| quantity.outputs(*m)).collect();
-    let columns = columns::find(&header, quantity.inputs(), &names).map_err(|why| failed(&why))?;
-    let mut first = csv::Writer::from_writer(Vec::new());
-    first.write_record(header.iter().map(String::from).chain(names))?;
-    let is_file = io.input.as_os_str() != "-";
-    let size = std::fs::metadata(&io.input).ok().filter(|_| is_file).map_or(0, |file| file.len());
-    interrupt::leaves_stream();
-    let meter = Meter::default();
-    meter.expect(SECONDS * size as f64);
-    let bar = progress::show(&meter, "answering");
-    let stage = meter.stage(SECONDS * size as f64);
-    stage.split(usize::try_from(size)?);
-    if !write_on(&first.into_inner()?)? {
-        return Ok(Done::Ok);
-    }
-    let answered = |row: Result<Row, RowError>| -> Result<Vec<String>, Failure> {
-        let Row { line, fields } = row.map_err(|why| failed(&why))?;
-        let mut values: Vec<String> = fields.iter().map(String::from).collect();
-        for &method in &io.method {
-            let found = quantity.values(&picked(&fields, &columns), &known, method);
-            values.extend(found.map_err(|why| failed(&format_args!("line {line}: {why}")))?);
-        }
-        Ok(values)
+    let input = open_or_stdin(&io.input, u64::MAX).with_context(path)?;
+    let mut rows = Rows::new(input, None).with_context(path)?;
+    let empty = || format!("{}: it is empty; the first row must name the columns", path());
+    let header = rows.read().with_context(path)?.with_context(empty)?.fields;
+    let [inputs, outputs] = quantity.columns();
+    let named = |method: &Method| {
+        let method = if *method == Method::Table { "table" } else { "exact" };
+        outputs.iter().map(move |stem| format!("{stem}_{method}"))
     };
-    let (mut noted, mut doubted) = (io.method.len() < 2, false);
-    let mut ended = false;
-    while !ended {
-        let mut some = Vec::new();
-        let start = rows.bytes();
-        while some.len() < ROWS && rows.bytes() - start < BYTES && !ended {
-            let row = rows.read().transpose().map(|row| complete(row?, header.len()));
-            ended = !matches!(row, Some(Ok(_)));
-            some.extend(row);
+    let names: Vec<String> = io.method.iter().flat_map(named).collect();
+    let columns = columns::find(&header, inputs, &names).with_context(path)?;
+    let mut first = Writer::from_writer(Vec::new());
+    first.write_record(header.iter().map(String::from).chain(names))?;
+    let size = std::fs::metadata(&io.input).ok().filter(|_| !is_stream(&io.input));
+    let size = size.map_or(0, |file| file.len());
+    interrupt::leaves_stream();
+    let answered = |row: Result<Row, RowError>| -> Result<StringRecord> {
+        let mut row = row?;
+        let point = picked(&row.fields, &columns);
+        let mut values = Vec::new();
+        for &method in &io.method {
+            let found = known.values(&point, method);
+            values.extend(found.with_context(|| format!("line {}", row.line))?);
         }
-        let read = || some.par_iter().filter_map(|row| row.as_ref().ok());
-        if !noted {
-            let note =
-                read().find_map_first(|row| quantity.note(&picked(&row.fields, &columns), &known));
-            note.iter().for_each(|note| report("note", note));
-            noted = note.is_some();
+        row.fields.extend(values);
+        Ok(row.fields)
+    };
+    watched("answering", SECONDS * size as f64, |meter| {
+        let stage = meter.stage(SECONDS * size as f64);
+        stage.split(usize::try_from(size)?);
+        if !write_on(&first.into_inner()?)? {
+            return Ok(());
         }
-        if !doubted {
-            let doubt = read().find_map_first(|row| {
-                let doubt = quantity.doubt(&picked(&row.fields, &columns))?;
-                Some(format!("{path}: line {}: {doubt}", row.line))
-            });
-            doubt.iter().for_each(|doubt| report("warning", doubt));
-            doubted = doubt.is_some();
-        }
-        let taken = rows.bytes() - start;
-        let answers: Vec<_> = some.into_par_iter().map(answered).collect();
-        // Whole rows in order; those before a refused one are still written.
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        let mut refused = None;
-        for answer in answers {
-            match answer {
-                Ok(row) => writer.write_record(&row)?,
-                Err(why) => {
-                    refused = Some(why);
-                    break;
-                }
+        let (mut noted, mut doubted) = (io.method.len() < 2, false);
+        let mut ended = false;
+        while !ended {
+            let mut some = Vec::new();
+            let start = rows.bytes();
+            while some.len() < ROWS && rows.bytes() - start < BYTES && !ended {
+                let row = rows.read().transpose().map(|row| complete(row?, header.len()));
+                ended = !matches!(row, Some(Ok(_)));
+                some.extend(row);
             }
+            let read = || some.par_iter().filter_map(|row| row.as_ref().ok());
+            if !noted {
+                let found = read().find_map_first(|row| known.note(&picked(&row.fields, &columns)));
+                found.iter().for_each(note);
+                noted = found.is_some();
+            }
+            if !doubted {
+                let found = read().find_map_first(|row| {
+                    let doubt = known.doubt(&picked(&row.fields, &columns))?;
+                    Some(format!("{}: line {}: {doubt}", path(), row.line))
+                });
+                found.iter().for_each(warn);
+                doubted = found.is_some();
+            }
+            let answers: Vec<_> = some.into_par_iter().map(answered).collect();
+            // Whole rows in order; those before a refused one are still written.
+            let mut writer = Writer::from_writer(Vec::new());
+            let write = |answer: Result<StringRecord>| Ok(writer.write_record(&answer?)?);
+            let refused: Result<()> = answers.into_iter().try_for_each(write);
+            if !write_on(&writer.into_inner()?)? {
+                return Ok(());
+            }
+            refused.with_context(path)?;
+            stage.steps(usize::try_from(rows.bytes() - start)?);
         }
-        if !write_on(&writer.into_inner()?)? {
-            break;
-        }
-        if let Some(why) = refused {
-            return Err(why);
-        }
-        stage.steps(usize::try_from(taken)?);
-    }
-    drop(bar);
-    Ok(Done::Ok)
+        Ok(())
+    })
 }
 
 /// The fields of a row in some columns.
-fn picked<'a>(record: &'a csv::StringRecord, columns: &[usize]) -> Vec<&'a str> {
+fn picked<'a>(record: &'a StringRecord, columns: &[usize]) -> Vec<&'a str> {
     columns.iter().map(|&column| &record[column]).collect()
 }
 
