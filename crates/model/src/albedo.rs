@@ -21,12 +21,11 @@ mod skewed;
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
-use microfacet_core::Masking;
-
-use crate::converge::{CUT, converge, rules};
-use crate::error::ParameterError;
+use crate::converge::{Albedo, Both, CUT, add, add_place, converge, rules};
+use crate::error::{ParameterError, check_cosine};
 use crate::panels::{End, Gauss};
 use crate::shape::Shape;
+use crate::slope_integrals::{inverse_ln_cosh, ln_cosh};
 use crate::slope_table::SlopeTable;
 use crate::smith_table::SmithTable;
 
@@ -36,38 +35,9 @@ const LARGEST_RAPIDITY: f64 = 340.0;
 /// 1.1 or more away.
 pub(crate) const PANEL: f64 = 1.5;
 /// Widest panel of φ.
-pub(crate) const SECTOR: f64 = 1.6;
+const SECTOR: f64 = 1.6;
 /// A square root is resolved by panels that begin this small: their error is 1e-3 (1e-2)^1.5.
 pub(crate) const ROOT: f64 = 0.01;
-
-/// Albedos of one view under N Fresnel weights, for both forms of masking.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Albedo<const N: usize> {
-    /// With G2 = G1(v) G1(l).
-    pub uncorrelated: [f64; N],
-    /// With G2 = 1/(1 + Λ(v) + Λ(l)).
-    pub height_correlated: [f64; N],
-    /// Upper estimate of the largest error: from the differences between the last orders of
-    /// quadrature, plus what is cut off.
-    pub error: f64,
-}
-
-impl<const N: usize> Albedo<N> {
-    /// The albedos for one form of masking.
-    pub fn of(&self, masking: Masking) -> [f64; N] {
-        match masking {
-            Masking::Uncorrelated => self.uncorrelated,
-            Masking::HeightCorrelated => self.height_correlated,
-        }
-    }
-
-    /// The largest difference to the albedos of `other`.
-    fn furthest(&self, other: &Self) -> f64 {
-        let pairs =
-            Masking::ALL.into_iter().flat_map(|form| self.of(form).into_iter().zip(other.of(form)));
-        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
-    }
-}
 
 /// Integrates albedos for one shape γ and any roughness, view and Fresnel reflectance.
 #[derive(Clone, Debug)]
@@ -82,6 +52,7 @@ pub struct AlbedoIntegrator {
 }
 
 /// The view and what depends on it alone.
+#[derive(Clone, Copy)]
 pub(crate) struct View {
     pub(crate) cos: f64,
     pub(crate) sin: f64,
@@ -106,7 +77,19 @@ pub(crate) struct View {
     /// Whether the branch point is strong enough to need panels of its own.
     branch: bool,
     /// v·m at which the reflectance has a kink; 0 if it has none.
-    kink: f64,
+    pub(crate) kink: f64,
+}
+
+/// The w at which integrals over the lobe are cut off, for normals that are visible beyond `from`
+/// only: the share of them beyond w is less than (cosh √s w/cosh √s from)^(−2k). `largest` is the
+/// largest rapidity √s w.
+fn cut(shape: &Shape, tolerance: f64, k: f64, from: f64, largest: f64) -> f64 {
+    let log = -libm::log(CUT * tolerance);
+    if shape.is_beckmann() {
+        return (log + from * from).sqrt();
+    }
+    let root = shape.s().sqrt();
+    inverse_ln_cosh(ln_cosh(root * from) + 0.5 * log / k).min(largest) / root
 }
 
 impl AlbedoIntegrator {
@@ -114,19 +97,9 @@ impl AlbedoIntegrator {
     /// [1e-13, 1e-2].
     pub fn new(shape: Shape, tolerance: f64) -> Self {
         let tolerance = tolerance.clamp(1e-13, 1e-2);
-        // The share of visible slopes beyond a rapidity v is less than cosh^(−2k) v.
-        let log = -libm::log(CUT * tolerance);
-        let cut = if shape.is_beckmann() {
-            log.sqrt()
-        } else {
-            let ln_cosh = 0.5 * log / (shape.gamma() - 1.5);
-            let root = shape.s().sqrt();
-            (ln_cosh + libm::log1p((-libm::expm1(-2.0 * ln_cosh)).sqrt())).min(LARGEST_RAPIDITY)
-                / root
-        };
-        let (smith, slopes) =
-            (SmithTable::new(&shape, (CUT * tolerance).max(1e-13)), SlopeTable::new(&shape, cut));
-        Self { shape, smith, slopes, rules: rules(), tolerance, cut }
+        let cut = cut(&shape, tolerance, shape.gamma() - 1.5, 0.0, LARGEST_RAPIDITY);
+        let smith = SmithTable::new(&shape, (CUT * tolerance).max(1e-13));
+        Self { shape, smith, slopes: SlopeTable::new(&shape, cut), rules: rules(), tolerance, cut }
     }
 
     /// ∫ π P22(r) r² dr beyond the largest rapidity, where integrals over heavy tails are cut off
@@ -169,14 +142,11 @@ impl AlbedoIntegrator {
         cos_theta: f64,
         weight: impl Fn(f64) -> [f64; N],
     ) -> Result<Albedo<N>, ParameterError> {
-        if !(0.0..=1.0).contains(&cos_theta) {
-            return Err(ParameterError::CosTheta(cos_theta));
-        }
+        check_cosine(cos_theta)?;
         // −0 is the horizon as well, not below it.
         let cos_theta = cos_theta.abs();
         if sigma == 0.0 {
-            let mirror = weight(cos_theta);
-            return Ok(Albedo { uncorrelated: mirror, height_correlated: mirror, error: 0.0 });
+            return Ok(Albedo::new([weight(cos_theta); 2], 0.0));
         }
         Ok(self.converged(tolerance, &self.view([sigma, sigma], cos_theta, 0.0)?, weight))
     }
@@ -234,14 +204,11 @@ impl AlbedoIntegrator {
         &self,
         tolerance: f64,
         kink: bool,
-        quadrature: impl Fn(&Gauss) -> [[f64; N]; 2],
+        quadrature: impl Fn(&Gauss) -> Both<N>,
     ) -> Albedo<N> {
         // At a kink orders converge algebraically, and their last difference says less about the
         // error. Elsewhere twice that difference, because two orders may agree by chance.
-        let factor = if kink { 10.0 } else { 2.0 };
-        let ([uncorrelated, height_correlated], error) =
-            converge(&self.rules, tolerance, factor, quadrature);
-        Albedo { uncorrelated, height_correlated, error }
+        converge(&self.rules, tolerance, if kink { 10.0 } else { 2.0 }, quadrature)
     }
 
     pub(crate) fn view(&self, sigma: [f64; 2], cos: f64, phi: f64) -> Result<View, ParameterError> {
@@ -250,9 +217,7 @@ impl AlbedoIntegrator {
                 return Err(ParameterError::Sigma(sigma));
             }
         }
-        if !(0.0..=1.0).contains(&cos) {
-            return Err(ParameterError::CosTheta(cos));
-        }
+        check_cosine(cos)?;
         let sin = ((1.0 - cos) * (1.0 + cos)).sqrt();
         let (sin_phi, cos_phi) = libm::sincos(phi);
         let rho = sin * libm::hypot(sigma[0] * cos_phi, sigma[1] * sin_phi);
@@ -305,24 +270,14 @@ impl AlbedoIntegrator {
         rule: &Gauss,
         view: &View,
         weight: &impl Fn(f64) -> [f64; N],
-    ) -> [[f64; N]; 2] {
-        let mut sum = [[0.0; N]; 2];
-        for (low, high) in self.sectors(view) {
-            rule.graded(low, high, SECTOR, |phi, jacobian| {
-                let part = self.ray(rule, view, phi, weight);
-                for (sum, part) in sum.iter_mut().flatten().zip(part.iter().flatten()) {
-                    *sum += jacobian * part;
-                }
-            });
-        }
+    ) -> Both<N> {
         let fold = if view.aspect == 1.0 { 2.0 } else { 1.0 };
-        sum.map(|form| form.map(|x| x * fold * view.scale / PI))
+        view.over_sectors(rule, self.sectors(view), fold, |phi| self.ray(rule, view, phi, weight))
     }
 
     /// The intervals of φ with the scales of variation at their ends; half a turn where the other
     /// half is the same.
     fn sectors(&self, view: &View) -> Vec<(End, End)> {
-        let ungraded = |at: f64| End { at, scale: f64::INFINITY };
         // b(φ) vanishes a right angle from φ₀; there R(φ) turns from the near rim to the far one.
         let turn = |at: f64| End { at, scale: view.turn.max(1e-9) };
         let scale = if view.branch { 0.05 * view.aspect } else { f64::INFINITY };
@@ -331,10 +286,10 @@ impl AlbedoIntegrator {
         if view.aspect == 1.0 {
             let right = turn(phi_0 + FRAC_PI_2);
             if view.kink == 0.0 {
-                return vec![(ungraded(phi_0), right), (right, normal)];
+                return vec![(End::plain(phi_0), right), (right, normal)];
             }
             let conic = self.conic_sectors(view.cos, view.sin, view.kink, right, normal);
-            let (first, tangent) = (ungraded(phi_0), conic[0].0);
+            let (first, tangent) = (End::plain(phi_0), conic[0].0);
             let before = if view.cos < view.kink {
                 vec![(first, right), (right, tangent)]
             } else {
@@ -368,7 +323,7 @@ impl AlbedoIntegrator {
         view: &View,
         phi: f64,
         weight: &impl Fn(f64) -> [f64; N],
-    ) -> [[f64; N]; 2] {
+    ) -> Both<N> {
         let (sin_phi, cos_phi) = libm::sincos(phi);
         let (x, y) = (view.sigma[0] * cos_phi, view.sigma[1] * sin_phi);
         let a = x * x + y * y;
@@ -392,7 +347,7 @@ impl AlbedoIntegrator {
         [a, b, aside]: [f64; 3],
         weight: &impl Fn(f64) -> [f64; N],
         across: impl Fn(f64, f64, f64) -> f64,
-    ) -> [[f64; N]; 2] {
+    ) -> Both<N> {
         let q = (b * b + a * view.cos * view.cos).sqrt();
         let s = self.shape.s();
         let rim = if b > 0.0 { view.cos / (b + q) } else { (q - b) / (a * view.cos) };
@@ -403,16 +358,15 @@ impl AlbedoIntegrator {
             let layer = a.sqrt() * (1.0 + a * rim * rim) / (2.0 * q * (1.0 + s * rim * rim).sqrt());
             End { at: w_rim, scale: layer }
         } else {
-            End { at: self.cut, scale: f64::INFINITY }
+            End::plain(self.cut)
         };
         // Distances from the branch point at l = n, in w.
         let cone = |distance: f64| {
             let scale = view.aspect * distance / (1.0 + s * view.r_normal * view.r_normal).sqrt();
             if view.branch && scale < 0.5 { scale.max(0.01 * view.aspect) } else { f64::INFINITY }
         };
-        let ungraded = |at: f64| End { at, scale: f64::INFINITY };
         let mut stops = self.conic(view.cos, view.kink, a, b, end.at, ROOT);
-        let mut from = ungraded(0.0);
+        let mut from = End::plain(0.0);
         let mut points = Vec::with_capacity(128);
         if b < 0.0 {
             let normal = End { at: view.w_normal, scale: cone(view.r_normal * aside) };
@@ -449,11 +403,7 @@ impl AlbedoIntegrator {
         }
         let mut sum = [[0.0; N]; 2];
         for [uncorrelated, correlated, mu, _] in points {
-            let fresnel = weight(mu.max(0.0));
-            for i in 0..N {
-                sum[0][i] += uncorrelated * fresnel[i];
-                sum[1][i] += correlated * fresnel[i];
-            }
+            add_place(&mut sum, [uncorrelated, correlated], weight(mu.max(0.0)));
         }
         if view.cos == 0.0
             && b < 0.0
@@ -529,5 +479,22 @@ impl AlbedoIntegrator {
             .collect();
         ends.sort_by(|x, y| x.at.total_cmp(&y.at));
         ends
+    }
+}
+
+impl View {
+    /// `fold`/π G1(v)/cos θ times the integral over sectors of φ of the integrals along rays.
+    pub(crate) fn over_sectors<const N: usize>(
+        &self,
+        rule: &Gauss,
+        sectors: Vec<(End, End)>,
+        fold: f64,
+        ray: impl Fn(f64) -> Both<N>,
+    ) -> Both<N> {
+        let mut sum = [[0.0; N]; 2];
+        for (low, high) in sectors {
+            rule.graded(low, high, SECTOR, |phi, jacobian| add(&mut sum, jacobian, &ray(phi)));
+        }
+        sum.map(|form| form.map(|x| x * fold * self.scale / PI))
     }
 }

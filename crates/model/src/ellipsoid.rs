@@ -2,7 +2,6 @@
 //! matrix.
 
 use core::f64::consts::PI;
-use core::fmt;
 
 use glam::DVec3;
 use microfacet_core::{Masking, Skew, SkewError, saturated};
@@ -14,43 +13,20 @@ use crate::shape::Shape;
 use crate::visible::{self, SignedSlope, UnitView, VisibleSlope, above_horizon};
 
 /// Why an ellipsoid was refused.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, PartialEq, thiserror::Error)]
 pub enum EllipsoidError {
     /// The shape is outside its domain.
-    Parameter(ParameterError),
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
     /// The matrix describes no ellipsoid.
-    Skew(SkewError),
+    #[error(transparent)]
+    Skew(#[from] SkewError),
     /// A lobe matrix was given with γ = ∞, where the lobe is infinitely narrow in canonical space.
+    #[error("a lobe matrix needs a finite gamma; for Beckmann give the unit matrix")]
     LobeWithoutWidth,
 }
 
-impl fmt::Display for EllipsoidError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Parameter(e) => e.fmt(f),
-            Self::Skew(e) => e.fmt(f),
-            Self::LobeWithoutWidth => {
-                write!(f, "a lobe matrix needs a finite gamma; for Beckmann give the unit matrix")
-            }
-        }
-    }
-}
-
 microfacet_core::debug_in_words!(EllipsoidError);
-
-impl core::error::Error for EllipsoidError {}
-
-impl From<ParameterError> for EllipsoidError {
-    fn from(e: ParameterError) -> Self {
-        Self::Parameter(e)
-    }
-}
-
-impl From<SkewError> for EllipsoidError {
-    fn from(e: SkewError) -> Self {
-        Self::Skew(e)
-    }
-}
 
 /// Ellipsoid normals of any shape γ: the Ellipsoid NDF (Walter, Dong, Marschner, Greenberg 2015,
 /// *The Ellipsoid Normal Distribution Function*, supplemental material of

@@ -81,7 +81,8 @@ mod walk;
 // What every caller needs in the version that this crate is built with.
 pub use glam;
 
-pub use albedo::{Albedo, AlbedoIntegrator};
+pub use albedo::AlbedoIntegrator;
+pub use converge::Albedo;
 pub use distribution::MicrofacetDistribution;
 pub use ellipsoid::{Ellipsoid, EllipsoidError};
 pub use error::ParameterError;

@@ -43,6 +43,13 @@ pub(crate) struct End {
     pub(crate) scale: f64,
 }
 
+impl End {
+    /// An end about which nothing varies quickly.
+    pub(crate) const fn plain(at: f64) -> Self {
+        Self { at, scale: f64::INFINITY }
+    }
+}
+
 impl Gauss {
     /// Calls `add(node, weight)` over [low.at, high.at] with panels no wider than `width`. Panels
     /// shrink geometrically towards an end whose scale is less than `width`: there the variable is
@@ -72,6 +79,14 @@ impl Gauss {
             for &(x, weight) in points {
                 add(start + step * x, step.abs() * weight);
             }
+        }
+    }
+
+    /// The same over the intervals between ascending stops.
+    #[inline]
+    pub(crate) fn between(&self, stops: &[End], width: f64, mut add: impl FnMut(f64, f64)) {
+        for pair in stops.windows(2) {
+            self.graded(pair[0], pair[1], width, &mut add);
         }
     }
 

@@ -3,7 +3,7 @@
 //!
 //! Kept to show where each form loses digits or overflows; use
 //! [`Shape::lambda`](crate::Shape::lambda) instead. Arguments: γ and the unit cotangent
-//! z = cot θ/σ > 0. The example `printed_formulas` compares each with the well-conditioned form.
+//! z = cot θ/σ > 0. The study `printed_formulas` compares each with the well-conditioned form.
 
 use core::f64::consts::PI;
 
@@ -20,19 +20,19 @@ pub struct Form {
 
 /// All of them, in the order in which they are explained here.
 pub const FORMS: [Form; 4] = [
-    Form {
-        equation: "13-15",
-        name: "hypergeometric",
-        lambda: |gamma, z| Some(lambda_hypergeometric(gamma, z)),
-    },
-    Form { equation: "21", name: "integer", lambda: lambda_integer },
-    Form { equation: "21", name: "half-integer", lambda: lambda_half_integer },
-    Form {
-        equation: "22-23",
-        name: "rational",
-        lambda: |gamma, z| Some(lambda_rational(gamma, z)),
-    },
+    form("13-15", "hypergeometric", |gamma, z| Some(lambda_hypergeometric(gamma, z))),
+    form("21", "integer", lambda_integer),
+    form("21", "half-integer", lambda_half_integer),
+    form("22-23", "rational", |gamma, z| Some(lambda_rational(gamma, z))),
 ];
+
+const fn form(
+    equation: &'static str,
+    name: &'static str,
+    lambda: fn(f64, f64) -> Option<f64>,
+) -> Form {
+    Form { equation, name, lambda }
+}
 
 /// Λ by eq. 13–15: Γ(γ−½)/(√π Γ(γ)) · [ (γ−1)^γ/((2γ−3) z) · (γ−1+z²)^(3/2−γ) + √(γ−1) z·₂F₁(½,
 /// γ−½; 3/2; −z²/(γ−1)) ] − ½.
@@ -176,27 +176,16 @@ mod tests {
 
     #[test]
     fn printed_forms_agree_where_they_are_sound() {
-        for z in [0.05, 0.4, 1.0, 2.5] {
-            for gamma in [1.6, 2.0, 2.5, 3.0, 7.3, 20.0] {
-                let error = (lambda_hypergeometric(gamma, z) - exact(gamma, z)).abs();
-                assert!(
-                    error < 1e-11 * (1.0 + exact(gamma, z)),
-                    "eq. 13 at gamma {gamma}, z {z}: {error}"
-                );
-            }
-            for gamma in [2.0, 3.0, 4.0, 10.0] {
-                let error = (lambda_integer(gamma, z).unwrap() - exact(gamma, z)).abs();
-                assert!(
-                    error < 1e-13 * (1.0 + exact(gamma, z)),
-                    "eq. 21 at gamma {gamma}, z {z}: {error}"
-                );
-            }
-            for gamma in [2.5, 3.5, 8.5, 40.5] {
-                let error = (lambda_half_integer(gamma, z).unwrap() - exact(gamma, z)).abs();
-                assert!(
-                    error < 1e-14 * (1.0 + exact(gamma, z)),
-                    "eq. 21 at gamma {gamma}, z {z}: {error}"
-                );
+        let cases: [(usize, &[f64], f64); 3] = [
+            (0, &[1.6, 2.0, 2.5, 3.0, 7.3, 20.0], 1e-11),
+            (1, &[2.0, 3.0, 4.0, 10.0], 1e-13),
+            (2, &[2.5, 3.5, 8.5, 40.5], 1e-14),
+        ];
+        for (i, gammas, tolerance) in cases {
+            for (&gamma, z) in gammas.iter().flat_map(|g| [0.05, 0.4, 1.0, 2.5].map(|z| (g, z))) {
+                let (Form { name, lambda, .. }, want) = (FORMS[i], exact(gamma, z));
+                let error = (lambda(gamma, z).unwrap() - want).abs();
+                assert!(error < tolerance * (1.0 + want), "{name} at {gamma}, z {z}: {error}");
             }
         }
         // Toward the branch point of the hypergeometric function only the cancellation against ½
@@ -216,19 +205,16 @@ mod tests {
             (3.0, ["hypergeometric", "integer", "rational"]),
             (2.5, ["hypergeometric", "half-integer", "rational"]),
         ] {
-            let found: Vec<&str> = FORMS
-                .into_iter()
-                .filter_map(|form| {
-                    let [found, truth] =
-                        [(form.lambda)(gamma, 1.0)?, exact(gamma, 1.0)].map(|x| 1.0 / (1.0 + x));
-                    let error = (found - truth).abs();
-                    // That of the approximation is at most 6.9e-3: `docs/formulas.md`.
-                    let tolerance = if form.name == "rational" { 7e-3 } else { 1e-14 };
-                    assert!(error < tolerance, "{} at gamma {gamma}: {error}", form.name);
-                    Some(form.name)
-                })
-                .collect();
-            assert_eq!(found, defined);
+            let checked = |Form { name, lambda, .. }: Form| {
+                let [found, truth] =
+                    [lambda(gamma, 1.0)?, exact(gamma, 1.0)].map(|x| 1.0 / (1.0 + x));
+                let error = (found - truth).abs();
+                // That of the approximation is at most 6.9e-3: `docs/formulas.md`.
+                let tolerance = if name == "rational" { 7e-3 } else { 1e-14 };
+                assert!(error < tolerance, "{name} at gamma {gamma}: {error}");
+                Some(name)
+            };
+            assert_eq!(FORMS.into_iter().filter_map(checked).collect::<Vec<_>>(), defined);
         }
     }
 

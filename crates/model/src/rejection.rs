@@ -36,14 +36,9 @@ impl StudentT {
         };
         // Slopes may be infinite near γ = 3/2; scaling by the largest keeps the normal finite.
         let scale = 1.0 / x.abs().max(y.abs()).max(1.0);
-        let (x, y) = if scale == 0.0 {
-            (
-                if x.is_infinite() { x.signum() } else { 0.0 },
-                if y.is_infinite() { y.signum() } else { 0.0 },
-            )
-        } else {
-            (x * scale, y * scale)
-        };
+        let at_infinity = |slope: f64| if slope.is_infinite() { slope.signum() } else { 0.0 };
+        let [x, y] =
+            [x, y].map(|slope| if scale == 0.0 { at_infinity(slope) } else { slope * scale });
         above_horizon(DVec3::new(
             self.sigma_x() * (x * at.cos_phi - y * at.sin_phi),
             self.sigma_y() * (x * at.sin_phi + y * at.cos_phi),

@@ -64,6 +64,11 @@ pub(crate) fn ln_cosh(v: f64) -> f64 {
     }
 }
 
+/// acosh(exp x) for x ≥ 0: the inverse of [`ln_cosh`].
+pub(crate) fn inverse_ln_cosh(x: f64) -> f64 {
+    x + libm::log1p((-libm::expm1(-2.0 * x)).sqrt())
+}
+
 /// 2F1(1, b; c; −w) for w ≥ 0 and 0 < b ≤ c by Gauss's continued fraction (DLMF 15.7.5 with a = 1),
 /// all of whose terms are positive.
 fn gauss_fraction(b: f64, c: f64, w: f64) -> f64 {

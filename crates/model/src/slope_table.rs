@@ -91,10 +91,8 @@ mod tests {
                 let highest = want.1.max(before.1).max(after.1).max(1e-12);
                 let errors = [of_slope, off, off / highest];
                 let bounds = [1e-12, 1e-12, 1e-9];
-                assert!(
-                    (0..3).all(|k| errors[k] < bounds[k]),
-                    "gamma {gamma}, w {w}: {got:?} against {want:?}"
-                );
+                let close = (0..3).all(|k| errors[k] < bounds[k]);
+                assert!(close, "gamma {gamma}, w {w}: {got:?} against {want:?}");
                 (0..3).for_each(|k| worst[k] = worst[k].max(errors[k]));
             }
         }

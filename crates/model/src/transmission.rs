@@ -16,8 +16,9 @@
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
-use crate::albedo::{Albedo, AlbedoIntegrator, PANEL, ROOT, SECTOR};
-use crate::error::ParameterError;
+use crate::albedo::{AlbedoIntegrator, PANEL, ROOT, View};
+use crate::converge::Albedo;
+use crate::error::{ParameterError, check_cosine};
 use crate::fresnel::Dielectric;
 use crate::panels::{End, Gauss};
 
@@ -25,15 +26,9 @@ use crate::panels::{End, Gauss};
 struct Pane<'a> {
     model: &'a AlbedoIntegrator,
     dielectric: Dielectric,
-    eta: f64,
     sigma: f64,
-    cos: f64,
-    sin: f64,
-    /// G1(v)/cos θ and G1(v).
-    scale: f64,
-    g1: f64,
-    /// v·m at which total reflection sets in; 0 if it does not.
-    critical: f64,
+    /// Its kink is v·m at which total reflection sets in; 0 if it does not.
+    view: View,
 }
 
 impl AlbedoIntegrator {
@@ -56,49 +51,28 @@ impl AlbedoIntegrator {
         cos_theta: f64,
         dielectric: Dielectric,
     ) -> Result<Albedo<1>, ParameterError> {
-        if !(0.0..=1.0).contains(&cos_theta) {
-            return Err(ParameterError::CosTheta(cos_theta));
-        }
+        check_cosine(cos_theta)?;
         if sigma == 0.0 {
-            let pane = [1.0 - dielectric.reflectance(cos_theta)];
-            return Ok(Albedo { uncorrelated: pane, height_correlated: pane, error: 0.0 });
+            return Ok(Albedo::new([[1.0 - dielectric.reflectance(cos_theta)]; 2], 0.0));
         }
-        let view = self.view([sigma, sigma], cos_theta, 0.0)?;
         let eta = dielectric.eta();
-        let critical = if eta < 1.0 { ((1.0 - eta) * (1.0 + eta)).sqrt() } else { 0.0 };
-        let pane = Pane {
-            model: self,
-            dielectric,
-            eta,
-            sigma,
-            cos: view.cos,
-            sin: view.sin,
-            scale: view.scale,
-            g1: view.g1,
-            critical,
-        };
-        Ok(self.refined(self.tolerance, critical > 0.0, |rule| pane.quadrature(rule)))
+        let kink = if eta < 1.0 { ((1.0 - eta) * (1.0 + eta)).sqrt() } else { 0.0 };
+        let mut view = self.view([sigma, sigma], cos_theta, 0.0)?;
+        view.kink = kink;
+        let pane = Pane { model: self, dielectric, sigma, view };
+        Ok(self.refined(self.tolerance, kink > 0.0, |rule| {
+            // The other half of the turn is the same.
+            view.over_sectors(rule, pane.sectors(), 2.0, |phi| pane.ray(rule, phi).map(|x| [x]))
+        }))
     }
 }
 
 impl Pane<'_> {
-    fn quadrature(&self, rule: &Gauss) -> [[f64; 1]; 2] {
-        let mut sum = [0.0; 2];
-        for (low, high) in self.sectors() {
-            rule.graded(low, high, SECTOR, |phi, jacobian| {
-                for (sum, part) in sum.iter_mut().zip(self.ray(rule, phi)) {
-                    *sum += jacobian * part;
-                }
-            });
-        }
-        // The other half of the turn is the same.
-        sum.map(|x| [2.0 * x * self.scale / PI])
-    }
-
     /// The intervals of φ over half a turn, from the azimuth where slopes lean away from the view,
     /// with the scales of variation at their ends.
     fn sectors(&self) -> Vec<(End, End)> {
-        let turn = self.cos / (self.sin * self.sigma.max(1.0));
+        let View { cos, sin, kink, .. } = self.view;
+        let turn = cos / (sin * self.sigma.max(1.0));
         let right = End { at: FRAC_PI_2, scale: turn.max(1e-9) };
         // Λ(l) has a branch point at l = −n, whose m leans straight away from the view or towards
         // it.
@@ -107,45 +81,45 @@ impl Pane<'_> {
             End { at, scale: if here { 0.05 } else { f64::INFINITY } }
         };
         let (away, towards) = (axis(0.0, 1.0), axis(PI, -1.0));
-        if self.critical == 0.0 {
+        if kink == 0.0 {
             return vec![(away, right), (right, towards)];
         }
-        let conic = self.model.conic_sectors(self.cos, self.sin, self.critical, right, towards);
+        let conic = self.model.conic_sectors(cos, sin, kink, right, towards);
         // On one side of their common tangent rays cut the conic and the circle; on the other they
         // cut neither, and all light is reflected.
-        if self.cos < self.critical { conic } else { [vec![(away, conic[0].0)], conic].concat() }
+        if cos < kink { conic } else { [vec![(away, conic[0].0)], conic].concat() }
     }
 
     /// The unit slope of the m that refracts v to −n, positive where it leans away from the view;
     /// `None` without such an m, or if the branch point of Λ(l) is too weak to need panels of its
     /// own.
     fn branch(&self) -> Option<f64> {
+        let (View { cos, sin, .. }, eta) = (self.view, self.dielectric.eta());
         let strong = self.model.shape().gamma() < 3.5 || self.sigma > 0.7;
         // m = ±(v − ηn), below the surface or turned away for the views in between.
-        let there = self.eta * self.cos > 1.0 || self.eta < self.cos;
-        (strong && there && self.eta != 1.0)
-            .then(|| self.sin / ((self.eta - self.cos) * self.sigma))
+        let there = eta * cos > 1.0 || eta < cos;
+        (strong && there && eta != 1.0).then(|| sin / ((eta - cos) * self.sigma))
     }
 
     /// The integral along one ray of slopes from m = n.
     fn ray(&self, rule: &Gauss, phi: f64) -> [f64; 2] {
+        let (View { cos, sin, .. }, eta) = (self.view, self.dielectric.eta());
         let a = self.sigma * self.sigma;
-        let b = self.sigma * self.sin * libm::cos(phi);
+        let b = self.sigma * sin * libm::cos(phi);
         let s = self.model.shape().s();
         // The slope from which on m faces away from the view; ∞ if there is none.
-        let rim =
-            if b > 0.0 { self.model.shape().asinh_slope(self.cos / b) } else { f64::INFINITY };
-        let scale = if rim < self.model.cut && self.eta > 1.0 {
+        let rim = if b > 0.0 { self.model.shape().asinh_slope(cos / b) } else { f64::INFINITY };
+        let scale = if rim < self.model.cut && eta > 1.0 {
             // cos θ_t turns within v·m of √(η²−1).
-            let across = ((self.eta - 1.0) * (self.eta + 1.0)).sqrt();
-            let r = self.cos / b;
+            let across = ((eta - 1.0) * (eta + 1.0)).sqrt();
+            let r = cos / b;
             0.5 * across * (1.0 + a * r * r).sqrt() / (b * (1.0 + s * r * r).sqrt())
         } else {
             f64::INFINITY
         };
         let end = End { at: rim.min(self.model.cut), scale };
         let mut stops = self.stops(a, b, s, end.at);
-        let mut from = End { at: 0.0, scale: f64::INFINITY };
+        let mut from = End::plain(0.0);
         if let Some(normal) = self.branch() {
             let r = libm::fabs(normal);
             let aside = r * libm::fabs(libm::sin(phi)) / (1.0 + s * r * r).sqrt();
@@ -180,7 +154,7 @@ impl Pane<'_> {
             // factor 1/η.
             let r = self.model.slopes.at(self.model.cut).0;
             for (sum, last) in sum.iter_mut().zip(self.refracted(a, b, r).unwrap_or_default()) {
-                *sum -= b * tail * last / (self.cos - r * b);
+                *sum -= b * tail * last / (cos - r * b);
             }
         }
         sum
@@ -189,7 +163,8 @@ impl Pane<'_> {
     /// (cos θ − r b) (1 − F) S at the unit slope r of a ray; `None` where nothing is refracted
     /// downwards.
     fn refracted(&self, a: f64, b: f64, r: f64) -> Option<[f64; 2]> {
-        let facing = self.cos - r * b;
+        let (View { cos, sin, g1, .. }, eta) = (self.view, self.dielectric.eta());
+        let facing = cos - r * b;
         if facing <= 0.0 {
             return None;
         }
@@ -197,41 +172,42 @@ impl Pane<'_> {
         let mu = (facing / length).min(1.0);
         let inside = self.dielectric.refracted_cos(mu)?;
         // l = −k m − v/η with k = cos θ_t − μ/η, formed without its cancellation.
-        let k = (1.0 - 1.0 / self.eta) * (1.0 + 1.0 / self.eta) / (inside + mu / self.eta);
-        let depth = k / length + self.cos / self.eta;
+        let k = (1.0 - 1.0 / eta) * (1.0 + 1.0 / eta) / (inside + mu / eta);
+        let depth = k / length + cos / eta;
         if depth <= 0.0 {
             return None;
         }
         // |l_xy|² from the sides of the triangle; cos φ = b/(σ sin θ).
-        let (reach, ahead) = (k * self.sigma * r / length, self.sin / self.eta);
-        let along = if self.sin > 0.0 { b / (self.sigma * self.sin) } else { 0.0 };
+        let (reach, ahead) = (k * self.sigma * r / length, sin / eta);
+        let along = if sin > 0.0 { b / (self.sigma * sin) } else { 0.0 };
         let across2 = reach * reach + ahead * ahead - 2.0 * reach * ahead * along;
-        let shares = self.model.smith.shares(self.g1, depth, (a * across2).max(0.0));
+        let shares = self.model.smith.shares(g1, depth, (a * across2).max(0.0));
         let mass = facing * (1.0 - self.dielectric.reflectance(mu));
         Some(shares.map(|share| mass * share))
     }
 
     /// Where a ray enters or leaves the domain, in w, ascending.
     fn stops(&self, a: f64, b: f64, s: f64, last: f64) -> Vec<End> {
-        if self.critical == 0.0 {
+        let (View { cos, sin, kink, .. }, eta) = (self.view, self.dielectric.eta());
+        if kink == 0.0 {
             return Vec::new();
         }
-        let mut stops = self.model.conic(self.cos, self.critical, a, b, last, ROOT);
-        let outside = (self.sin - self.eta) * (self.sin + self.eta);
+        let mut stops = self.model.conic(cos, kink, a, b, last, ROOT);
+        let outside = (sin - eta) * (sin + eta);
         let root = b * b - a * outside;
-        if b < 0.0 && outside > 0.0 && root >= 0.0 && self.cos > 0.0 {
+        if b < 0.0 && outside > 0.0 && root >= 0.0 && cos > 0.0 {
             // The nearer of the ray's intersections with the circle; there l grazes, and masking
             // sets in within σ of it.
-            let r = outside / (self.cos * (root.sqrt() - b));
+            let r = outside / (cos * (root.sqrt() - b));
             let w = self.model.shape().asinh_slope(r);
             let depth = |r: f64| {
                 let length = (1.0 + a * r * r).sqrt();
-                let mu = (self.cos - r * b) / length;
-                let square = (mu - self.critical) * (mu + self.critical);
-                (square.max(0.0).sqrt() - mu) / length + self.cos
+                let mu = (cos - r * b) / length;
+                let square = (mu - kink) * (mu + kink);
+                (square.max(0.0).sqrt() - mu) / length + cos
             };
             let h = 1e-4;
-            let slope = libm::fabs(depth(r * (1.0 + h)) - depth(r)) / (r * h * self.eta);
+            let slope = libm::fabs(depth(r * (1.0 + h)) - depth(r)) / (r * h * eta);
             let layer = self.sigma / (slope * (1.0 + s * r * r).sqrt());
             if w > 0.0 && w < last {
                 stops.push(End { at: w, scale: layer.clamp(1e-4, 1.0) });

@@ -57,10 +57,8 @@ fn nodes(a: f64, b: f64) -> Vec<(f64, f64)> {
             // tanh, measured from the nearer end.
             let (e, half) = ((-2.0 * u.abs()).exp(), 0.5 * (b - a));
             let from_end = 2.0 * half * e / (1.0 + e);
-            (
-                if u < 0.0 { a + from_end } else { b - from_end },
-                half * 4.0 * e / ((1.0 + e) * (1.0 + e)) * du,
-            )
+            let x = if u < 0.0 { a + from_end } else { b - from_end };
+            (x, half * 4.0 * e / ((1.0 + e) * (1.0 + e)) * du)
         }
     };
     (-60..=60).map(at).filter(|(x, w)| x.abs() < 1e60 && *w > 0.0).collect()
@@ -172,14 +170,10 @@ fn plain_matrices_are_student_t() {
             let (m, v, u) = (above(&mut rng), above(&mut rng), [rng.random(), rng.random()]);
             assert!((e.d(m) - t.d(m)).abs() <= 1e-13 * t.d(m));
             assert!((e.g1(v) - t.g1(v)).abs() < 1e-14);
-            assert!(
-                (e.sample_visible_normal(v, u) - t.sample_visible_normal(v, u)).length() < 1e-13
-            );
-            let back = e.invert_visible_normal(v, e.sample_visible_normal(v, u));
-            assert!(
-                (back[0] - u[0]).abs() < 1e-10 && (back[1] - u[1]).abs() < 1e-10,
-                "{u:?} {back:?}"
-            );
+            let seen = e.sample_visible_normal(v, u);
+            assert!((seen - t.sample_visible_normal(v, u)).length() < 1e-13);
+            let back = e.invert_visible_normal(v, seen);
+            assert!([0, 1].into_iter().all(|i| (back[i] - u[i]).abs() < 1e-10), "{u:?} {back:?}");
         }
     }
 }
@@ -189,10 +183,9 @@ fn refusals_say_why() {
     let refused = |a: [f64; 9]| Skew::from_matrix(rows(DMat3::from_cols_array(&a))).unwrap_err();
     assert!(matches!(refused([f64::NAN; 9]), SkewError::NotFinite(_)));
     assert!(matches!(refused([0.0; 9]), SkewError::Singular(_)));
-    for a in [
-        [1.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 1.0],
-        [1.0, 0.0, 1e9, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
-    ] {
+    let flat = [1.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+    let sheared = [1.0, 0.0, 1e9, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+    for a in [flat, sheared] {
         assert!(matches!(refused(a), SkewError::Singular(_)), "{a:?}");
     }
     let lobe = |gamma| Ellipsoid::from_lobe_matrix(rows(DMat3::IDENTITY), gamma);

@@ -2,7 +2,8 @@
 
 use core::f64::consts::FRAC_PI_2;
 
-use super::{Albedo, AlbedoIntegrator};
+use super::AlbedoIntegrator;
+use crate::converge::{Albedo, add, differences, largest};
 use crate::error::ParameterError;
 
 /// Steps of the averaging rule: the first, and how often it is halved at most.
@@ -28,8 +29,8 @@ impl AlbedoIntegrator {
         sigma: f64,
         weight: impl Fn(f64) -> [f64; N],
     ) -> Result<Albedo<N>, ParameterError> {
-        let mut sum = Albedo { uncorrelated: [0.0; N], height_correlated: [0.0; N], error: 0.0 };
-        let (mut before, mut last_change) = (sum, f64::INFINITY);
+        let (mut sum, mut error) = ([[0.0; N]; 2], 0.0);
+        let (mut before, mut last_change) = (Albedo::new(sum, error), f64::INFINITY);
         let mut step = COARSEST_STEP;
         for halving in 0..=HALVINGS {
             let nodes = libm::floor(LAST_NODE / step) as i32;
@@ -40,22 +41,15 @@ impl AlbedoIntegrator {
                 // Nodes of little weight need less accuracy.
                 let tolerance = self.tolerance * (RARE / share).clamp(1.0, 1e4);
                 let albedo = self.reflection_to(tolerance, sigma, cos, &weight)?;
-                for i in 0..N {
-                    sum.uncorrelated[i] += share * albedo.uncorrelated[i];
-                    sum.height_correlated[i] += share * albedo.height_correlated[i];
-                }
-                sum.error += share * albedo.error;
+                add(&mut sum, share, &albedo.both());
+                error += share * albedo.error;
             }
-            let now = Albedo {
-                uncorrelated: sum.uncorrelated.map(|x| step * x),
-                height_correlated: sum.height_correlated.map(|x| step * x),
-                error: step * sum.error,
-            };
-            let change = now.furthest(&before);
+            let now = sum.map(|form| form.map(|x| step * x));
+            let change = largest(&differences(&now, &before.both()));
             // The change falls faster than geometrically.
             let ahead =
                 if change == 0.0 { 0.0 } else { change * (10.0 * change / last_change).min(1.0) };
-            before = Albedo { error: now.error + ahead, ..now };
+            before = Albedo::new(now, step * error + ahead);
             if halving > 1 && ahead < self.tolerance {
                 break;
             }

@@ -19,8 +19,8 @@
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
-use super::{Albedo, AlbedoIntegrator, View};
-use crate::converge::CUT;
+use super::{AlbedoIntegrator, View};
+use crate::converge::{Albedo, Both, CUT, add, differences, largest};
 use crate::panels::Gauss;
 
 /// Shares of the tolerance for the order along rays and for the rays.
@@ -95,7 +95,7 @@ impl AlbedoIntegrator {
     ) -> Albedo<N> {
         let turn =
             Turn { crowding: libm::asinh(1.0 / view.turn.max(1e-9)).max(0.1), branch: view.branch };
-        let along = |order: usize, rays: &[Ray]| -> Vec<[[f64; N]; 2]> {
+        let along = |order: usize, rays: &[Ray]| -> Vec<Both<N>> {
             rays.iter().map(|ray| self.round_ray(&self.rules[order], view, ray, &weight)).collect()
         };
         let mut steps = turn.first_steps(tolerance);
@@ -110,7 +110,7 @@ impl AlbedoIntegrator {
         let (mut worse, mut parts) = (along(order - 1, &rays), along(order, &rays));
         let inner = loop {
             let mut off = [[0.0; N]; 2];
-            add(&mut off, &rays, parts.iter().zip(&worse).map(|(a, b)| differences(a, b)));
+            add_rays(&mut off, &rays, parts.iter().zip(&worse).map(|(a, b)| differences(a, b)));
             // The error of the order before: rays in between may err more than the first ones.
             let inner = unit(steps) * largest(&off);
             if inner < INNER * tolerance || order + 1 == self.rules.len() {
@@ -121,16 +121,15 @@ impl AlbedoIntegrator {
             parts = along(order, &rays);
         };
         let mut sum = [[0.0; N]; 2];
-        add(&mut sum, &rays, parts);
-        let whole =
-            |sum: &[[f64; N]; 2], steps: usize| sum.map(|form| form.map(|x| x * unit(steps)));
+        add_rays(&mut sum, &rays, parts);
+        let whole = |sum: &Both<N>, steps: usize| sum.map(|form| form.map(|x| x * unit(steps)));
         let mut before = whole(&sum, steps);
         let (mut outer, mut last) = (f64::INFINITY, f64::INFINITY);
         for _ in 0..HALVINGS {
             steps *= 2;
             // Those of the longer step stay.
             let rays = turn.rays(steps, 2);
-            add(&mut sum, &rays, along(order, &rays));
+            add_rays(&mut sum, &rays, along(order, &rays));
             let now = whole(&sum, steps);
             let change = largest(&differences(&now, &before));
             // The change falls at least geometrically.
@@ -141,8 +140,7 @@ impl AlbedoIntegrator {
                 break;
             }
         }
-        let [uncorrelated, height_correlated] = before;
-        Albedo { uncorrelated, height_correlated, error: inner + outer + 10.0 * CUT * tolerance }
+        Albedo::new(before, inner + outer + 10.0 * CUT * tolerance)
     }
 
     /// The integral along one ray of slopes from m = n to the rim.
@@ -152,7 +150,7 @@ impl AlbedoIntegrator {
         view: &View,
         ray: &Ray,
         weight: &impl Fn(f64) -> [f64; N],
-    ) -> [[f64; N]; 2] {
+    ) -> Both<N> {
         let sigma = view.sigma[0];
         let a = sigma * sigma;
         let b = sigma * view.sin * ray.cos;
@@ -162,22 +160,10 @@ impl AlbedoIntegrator {
 }
 
 /// Adds the parts of rays to a sum.
-fn add<const N: usize>(
-    sum: &mut [[f64; N]; 2],
+fn add_rays<const N: usize>(
+    sum: &mut Both<N>,
     rays: &[Ray],
-    parts: impl IntoIterator<Item = [[f64; N]; 2]>,
+    parts: impl IntoIterator<Item = Both<N>>,
 ) {
-    for (ray, part) in rays.iter().zip(parts) {
-        for (sum, part) in sum.iter_mut().flatten().zip(part.iter().flatten()) {
-            *sum += ray.share * part;
-        }
-    }
-}
-
-fn differences<const N: usize>(a: &[[f64; N]; 2], b: &[[f64; N]; 2]) -> [[f64; N]; 2] {
-    [0, 1].map(|form| core::array::from_fn(|i| (a[form][i] - b[form][i]).abs()))
-}
-
-fn largest<const N: usize>(values: &[[f64; N]; 2]) -> f64 {
-    values.iter().flatten().copied().fold(0.0, f64::max)
+    rays.iter().zip(parts).for_each(|(ray, part)| add(sum, ray.share, &part));
 }

@@ -22,12 +22,11 @@
 
 use microfacet_core::{Masking, Skew};
 
-use super::{Albedo, AlbedoIntegrator, PANEL};
-use crate::converge::{CUT, converge};
+use super::{AlbedoIntegrator, PANEL, cut};
+use crate::converge::{Albedo, Both, add, add_place, converge};
 use crate::ellipsoid::Ellipsoid;
-use crate::error::ParameterError;
+use crate::error::{ParameterError, check_cosine};
 use crate::panels::{End, Gauss};
-use crate::slope_integrals;
 
 /// Largest rapidity of a slope along the view, so that its square does not overflow together with
 /// slopes across.
@@ -114,22 +113,17 @@ impl AlbedoIntegrator {
             let [given, prepared] = [ellipsoid.shape(), &self.shape].map(|shape| shape.gamma());
             return Err(ParameterError::OtherGamma { given, prepared });
         }
-        if !(0.0..=1.0).contains(&cos_theta) {
-            return Err(ParameterError::CosTheta(cos_theta));
-        }
+        check_cosine(cos_theta)?;
         if !phi.is_finite() {
             return Err(ParameterError::Phi(phi));
         }
         let view = View::new(ellipsoid, cos_theta, phi);
         if view.scale.is_infinite() {
-            return Ok(Albedo { uncorrelated: [0.0; N], height_correlated: [0.0; N], error: 0.0 });
+            return Ok(Albedo::new([[0.0; N]; 2], 0.0));
         }
         let along = self.along(&view);
-        let ([uncorrelated, height_correlated], error) =
-            converge(&self.rules, self.tolerance, FACTOR, |rule| {
-                self.skewed_quadrature(rule, &view, &along, &weight)
-            });
-        Ok(Albedo { uncorrelated, height_correlated, error })
+        let quadrature = |rule: &Gauss| self.skewed_quadrature(rule, &view, &along, &weight);
+        Ok(converge(&self.rules, self.tolerance, FACTOR, quadrature))
     }
 
     /// The integrals for both forms of masking at one order of quadrature.
@@ -139,21 +133,15 @@ impl AlbedoIntegrator {
         view: &View,
         along: &Along,
         weight: &impl Fn(f64) -> [f64; N],
-    ) -> [[f64; N]; 2] {
+    ) -> Both<N> {
         let mut sum = [[0.0; N]; 2];
-        let mut add = |w: f64, jacobian: f64| {
-            let x = self.signed_slope(w);
-            let Some(chord) = view.chord(x, self.stretch(x)) else { return };
+        let mut chord = |w: f64, jacobian: f64| {
+            let Some(chord) = self.chord(view, w) else { return };
             let mass = jacobian * self.shape.density(w) * chord.facing * view.scale;
-            let part = self.across(rule, view, &chord, weight);
-            for (sum, part) in sum.iter_mut().flatten().zip(part.iter().flatten()) {
-                *sum += mass * part;
-            }
+            add(&mut sum, mass, &self.across(rule, view, &chord, weight));
         };
         let (stops, end) = (&along.stops, along.end);
-        for pair in stops.windows(2) {
-            rule.graded(pair[0], pair[1], PANEL, &mut add);
-        }
+        rule.between(stops, PANEL, &mut chord);
         // In a power-law tail everything but the power itself fades exponentially, so that panels
         // may grow.
         let mut from = stops[stops.len() - 1];
@@ -166,7 +154,7 @@ impl AlbedoIntegrator {
             } else {
                 end
             };
-            rule.graded(from, to, width, &mut add);
+            rule.graded(from, to, width, &mut chord);
             from = to;
         }
         if view.cos == 0.0 && end.at * self.shape.s().sqrt() >= LARGEST_RAPIDITY {
@@ -190,9 +178,8 @@ impl AlbedoIntegrator {
         weight: &impl Fn(f64) -> [f64; N],
     ) -> [f64; N] {
         let mut sum = [0.0; N];
-        let ungraded = |at: f64| End { at, scale: f64::INFINITY };
         let cut = self.cut_across();
-        rule.graded(ungraded(-cut), ungraded(cut), PANEL, |w, jacobian| {
+        rule.graded(End::plain(-cut), End::plain(cut), PANEL, |w, jacobian| {
             let ratio =
                 (view.lambda + view.mu * self.shape.s().sqrt() * self.signed_slope(w)) / view.beta;
             let fresnel = weight(1.0 / (1.0 + ratio * ratio).sqrt());
@@ -207,7 +194,8 @@ impl AlbedoIntegrator {
     fn along(&self, view: &View) -> Along {
         let [low, high] = [-view.cos / (1.0 + view.sin), (1.0 + view.sin) / view.cos]
             .map(|xi| self.signed_unit((xi - view.mean[0]) / view.beta));
-        let cut = self.cut_along(low.max(0.0));
+        let k = self.shape.gamma() - 1.5;
+        let cut = cut(&self.shape, self.tolerance, k, low.max(0.0), LARGEST_RAPIDITY);
         // Chords open like a square root, until they are as wide as the lobe.
         let opening = view.mu * view.mu * view.cos / (view.beta * view.beta);
         let edge = |at: f64| End { at: at.clamp(-cut, cut), scale: opening.clamp(1e-4, 0.05) };
@@ -224,15 +212,11 @@ impl AlbedoIntegrator {
                 stops.push(End { at: normal, scale: 0.02 });
             }
         }
-        stops.push(if tail {
-            End { at: low.at.max(ordinary), scale: f64::INFINITY }
-        } else {
-            high
-        });
+        stops.push(if tail { End::plain(low.at.max(ordinary)) } else { high });
         if view.mean != [0.0; 2] {
             self.tangents(view, &mut stops);
         }
-        Along { stops, end: End { scale: f64::INFINITY, ..high } }
+        Along { stops, end: End::plain(high.at) }
     }
 
     /// Adds to `stops` the chords that touch the curve at which the clamp of G1(l) sets in, and
@@ -240,8 +224,7 @@ impl AlbedoIntegrator {
     fn tangents(&self, view: &View, stops: &mut Vec<End>) {
         // The least of area − l_z along a chord: positive if nothing on it is clamped.
         let least = |w: f64| {
-            let x = self.signed_slope(w);
-            let Some(chord) = view.chord(x, self.stretch(x)) else { return RIM };
+            let Some(chord) = self.chord(view, w) else { return RIM };
             let reflected =
                 |w: f64| view.reflect(self, &chord, chord.eta + chord.rate * self.signed_slope(w));
             let points = self.search_points(view, &chord, self.chord_ends(view, &chord));
@@ -254,8 +237,7 @@ impl AlbedoIntegrator {
         // integrals along chords vary on the scale of that interval.
         let crossings = [-1.0, 0.0, 1.0].map(|t| {
             let excess = |w: f64| {
-                let x = self.signed_slope(w);
-                let Some(chord) = view.chord(x, self.stretch(x)) else { return RIM };
+                let Some(chord) = self.chord(view, w) else { return RIM };
                 let [low, high] = self.chord_ends(view, &chord);
                 let t = self.signed_slope(f64::clamp(t, low, high));
                 view.reflect(self, &chord, chord.eta + chord.rate * t).excess()
@@ -276,6 +258,19 @@ impl AlbedoIntegrator {
         stops.sort_by(|a, b| a.at.total_cmp(&b.at));
     }
 
+    /// The chord at w; `None` if rounding puts it outside the disc.
+    fn chord(&self, view: &View, w: f64) -> Option<Chord> {
+        let x = self.signed_slope(w);
+        let (xi, rate) = (view.mean[0] + view.beta * x, view.mu * self.stretch(x));
+        let facing = view.cos + view.sin * xi;
+        (facing > 0.0 && view.half_chord(xi) > 0.0).then(|| Chord {
+            xi,
+            facing,
+            eta: view.mean[1] + view.lambda * x,
+            rate,
+        })
+    }
+
     /// √(1 + s x²).
     fn stretch(&self, x: f64) -> f64 {
         (1.0 + self.shape.s() * x * x).sqrt()
@@ -287,26 +282,9 @@ impl AlbedoIntegrator {
         [-half, half].map(|eta| self.signed_unit((eta - chord.eta) / chord.rate).clamp(-cut, cut))
     }
 
-    /// The w at which the integral is cut off, for normals that are visible beyond `from` only: the
-    /// share beyond it is less than (cosh w/cosh from)^(−2k).
-    fn cut_along(&self, from: f64) -> f64 {
-        let log = -libm::log(CUT * self.tolerance);
-        if self.shape.is_beckmann() {
-            return (log + from * from).sqrt();
-        }
-        let root = self.shape.s().sqrt();
-        let ln_cosh =
-            slope_integrals::ln_cosh(root * from) + 0.5 * log / (self.shape.gamma() - 1.5);
-        inverse_ln_cosh(ln_cosh).min(LARGEST_RAPIDITY) / root
-    }
-
-    /// The same across the view, where tails are shorter: the share is less than cosh^(−2k−1) w.
+    /// The cut across the view, where tails are shorter: the share is less than cosh^(−2k−1) √s w.
     fn cut_across(&self) -> f64 {
-        let log = -libm::log(CUT * self.tolerance);
-        if self.shape.is_beckmann() {
-            return log.sqrt();
-        }
-        inverse_ln_cosh(0.5 * log / (self.shape.gamma() - 1.0)) / self.shape.s().sqrt()
+        cut(&self.shape, self.tolerance, self.shape.gamma() - 1.0, 0.0, f64::INFINITY)
     }
 
     /// Where l is nearest to n along a chord, and the distance within which l turns away from n,
@@ -358,7 +336,7 @@ impl AlbedoIntegrator {
         view: &View,
         chord: &Chord,
         weight: &impl Fn(f64) -> [f64; N],
-    ) -> [[f64; N]; 2] {
+    ) -> Both<N> {
         let mut sum = [[0.0; N]; 2];
         let s = self.shape.s();
         let reflected =
@@ -366,7 +344,7 @@ impl AlbedoIntegrator {
         let half = view.half_chord(chord.xi);
         let [low, high] = self.chord_ends(view, chord).map(|w| {
             if w.abs() >= self.cut_across() {
-                return End { at: w, scale: f64::INFINITY };
+                return End::plain(w);
             }
             // l_z falls by 2 cos θ |η|/(1 + r²) per η, r being the slope: to the area that l sees,
             // and then to zero.
@@ -379,9 +357,8 @@ impl AlbedoIntegrator {
         }
         let mut stops = vec![low];
         if view.mean != [0.0; 2] {
-            let ungraded = |at: f64| End { at, scale: f64::INFINITY };
             let points = self.search_points(view, chord, [low.at, high.at]);
-            changes(&points, |w| reflected(w).excess(), |at| stops.push(ungraded(at)));
+            changes(&points, |w| reflected(w).excess(), |at| stops.push(End::plain(at)));
         }
         let centre = self.chord_centre(view, chord);
         if centre.scale < 0.5 * PANEL && low.at < centre.at && centre.at < high.at {
@@ -389,7 +366,7 @@ impl AlbedoIntegrator {
         }
         stops.push(high);
         stops.sort_by(|a, b| a.at.total_cmp(&b.at));
-        let mut add = |w: f64, jacobian: f64| {
+        rule.between(&stops, PANEL, |w, jacobian| {
             let l = reflected(w);
             if !(l.cos > 0.0) {
                 return;
@@ -397,16 +374,9 @@ impl AlbedoIntegrator {
             let g1 = if l.area > l.cos { l.cos / l.area } else { 1.0 };
             let fresnel = weight(l.facing.min(1.0));
             let mass = jacobian * self.shape.across_density(w);
-            let [uncorrelated, correlated] =
-                Masking::ALL.map(|masking| mass * masking.g2_over_g1(view.g1, g1));
-            for i in 0..N {
-                sum[0][i] += uncorrelated * fresnel[i];
-                sum[1][i] += correlated * fresnel[i];
-            }
-        };
-        for pair in stops.windows(2) {
-            rule.graded(pair[0], pair[1], PANEL, &mut add);
-        }
+            let shares = Masking::ALL.map(|masking| mass * masking.g2_over_g1(view.g1, g1));
+            add_place(&mut sum, shares, fresnel);
+        });
         sum
     }
 }
@@ -454,16 +424,6 @@ impl View {
         (near * far).sqrt()
     }
 
-    /// The chord at x, where slopes across are `stretch` times t; `None` if rounding puts x outside
-    /// the disc.
-    fn chord(&self, x: f64, stretch: f64) -> Option<Chord> {
-        let xi = self.mean[0] + self.beta * x;
-        let facing = self.cos + self.sin * xi;
-        let chord =
-            Chord { xi, facing, eta: self.mean[1] + self.lambda * x, rate: self.mu * stretch };
-        (facing > 0.0 && self.half_chord(xi) > 0.0).then_some(chord)
-    }
-
     #[inline]
     fn reflect(&self, integrator: &AlbedoIntegrator, chord: &Chord, eta: f64) -> Reflected {
         let square = 1.0 + chord.xi * chord.xi + eta * eta;
@@ -473,11 +433,6 @@ impl View {
         let area = integrator.smith.area(cos + self.mean[0] * x + self.mean[1] * y, u * u + v * v);
         Reflected { cos, area, facing: chord.facing / square.sqrt(), square }
     }
-}
-
-/// acosh(exp x) for x ≥ 0.
-fn inverse_ln_cosh(x: f64) -> f64 {
-    x + libm::log1p((-libm::expm1(-2.0 * x)).sqrt())
 }
 
 /// The ends of an interval of w and the points that divide it into parts, narrow in the bulk of the

@@ -13,9 +13,8 @@
 use microfacet_core::Masking;
 
 use super::Marginal;
-use crate::albedo::Albedo;
-use crate::converge::{CUT, converge, rules};
-use crate::error::ParameterError;
+use crate::converge::{Albedo, Both, CUT, add, add_place, converge, rules};
+use crate::error::{ParameterError, check_cosine};
 use crate::panels::{End, Gauss};
 use crate::smith_table::SmithTable;
 
@@ -90,17 +89,12 @@ impl<'a> RadialAlbedo<'a> {
         cos_theta: f64,
         weight: impl Fn(f64) -> [f64; N],
     ) -> Result<Albedo<N>, ParameterError> {
-        if !(0.0..=1.0).contains(&cos_theta) {
-            return Err(ParameterError::CosTheta(cos_theta));
-        }
+        check_cosine(cos_theta)?;
         let (cos, sin) = (cos_theta, ((1.0 - cos_theta) * (1.0 + cos_theta)).sqrt());
         let rho = self.marginal.sigma() * sin;
         let view = View { cos, sin, scale: 1.0 / self.smith.area(cos, rho * rho) };
-        let ([uncorrelated, height_correlated], error) =
-            converge(&self.rules, self.tolerance, 2.0, |rule| {
-                self.quadrature(rule, &view, &weight)
-            });
-        Ok(Albedo { uncorrelated, height_correlated, error })
+        let quadrature = |rule: &Gauss| self.quadrature(rule, &view, &weight);
+        Ok(converge(&self.rules, self.tolerance, 2.0, quadrature))
     }
 
     /// The integrals for both forms of masking at one order of quadrature.
@@ -109,22 +103,17 @@ impl<'a> RadialAlbedo<'a> {
         rule: &Gauss,
         view: &View,
         weight: &impl Fn(f64) -> [f64; N],
-    ) -> [[f64; N]; 2] {
+    ) -> Both<N> {
         let mut sum = [[0.0; N]; 2];
-        for pair in self.stops(view).windows(2) {
-            rule.graded(pair[0], pair[1], PANEL, |w, jacobian| {
-                let r = libm::sinh(w);
-                let density = self.marginal.p22(r);
-                if density == 0.0 {
-                    return;
-                }
-                let mass = 2.0 * view.scale * jacobian * libm::cosh(w) * r * density;
-                let arc = self.arc(rule, view, self.marginal.sigma() * r, weight);
-                for (sum, part) in sum.iter_mut().flatten().zip(arc.iter().flatten()) {
-                    *sum += mass * part;
-                }
-            });
-        }
+        rule.between(&self.stops(view), PANEL, |w, jacobian| {
+            let r = libm::sinh(w);
+            let density = self.marginal.p22(r);
+            if density == 0.0 {
+                return;
+            }
+            let mass = 2.0 * view.scale * jacobian * libm::cosh(w) * r * density;
+            add(&mut sum, mass, &self.arc(rule, view, self.marginal.sigma() * r, weight));
+        });
         sum
     }
 
@@ -134,9 +123,8 @@ impl<'a> RadialAlbedo<'a> {
         let [near, far] = [view.cos / (1.0 + view.sin), (1.0 + view.sin) / view.cos]
             .map(|slope| libm::asinh(slope / self.marginal.sigma()));
         let rim = |at: f64| End { at, scale: near.clamp(1e-5, 0.05) };
-        let ungraded = |at: f64| End { at, scale: f64::INFINITY };
         let last = self.corners[self.corners.len() - 1];
-        let corners = self.corners.iter().copied().filter(|w| *w < far).map(ungraded);
+        let corners = self.corners.iter().copied().filter(|w| *w < far).map(End::plain);
         let mut stops: Vec<End> =
             [End { at: 0.0, scale: self.peak }].into_iter().chain(corners).collect();
         stops.extend([near, far].into_iter().filter(|w| *w < last).map(rim));
@@ -151,7 +139,7 @@ impl<'a> RadialAlbedo<'a> {
         view: &View,
         r: f64,
         weight: &impl Fn(f64) -> [f64; N],
-    ) -> [[f64; N]; 2] {
+    ) -> Both<N> {
         let mut sum = [[0.0; N]; 2];
         let sigma = self.marginal.sigma();
         let square = 1.0 + r * r;
@@ -167,7 +155,7 @@ impl<'a> RadialAlbedo<'a> {
         let fall = 2.0 * r * view.sin / square;
         let layer = height / (fall * libm::sin(end)).max((fall * height).sqrt());
         let rim = End { at: end, scale: layer.max(1e-6) };
-        rule.graded(End { at: 0.0, scale: f64::INFINITY }, rim, SECTOR, |phi, jacobian| {
+        rule.graded(End::plain(0.0), rim, SECTOR, |phi, jacobian| {
             let (facing, l_z) = light(phi);
             let across = sigma * sigma * (1.0 - l_z) * (1.0 + l_z);
             let g1 = self.smith.g1(l_z, across.max(0.0));
@@ -176,12 +164,8 @@ impl<'a> RadialAlbedo<'a> {
             }
             let fresnel = weight((facing / square.sqrt()).min(1.0));
             let mass = jacobian * facing;
-            let [uncorrelated, correlated] =
-                Masking::ALL.map(|masking| mass * masking.g2_over_g1(g1_v, g1));
-            for i in 0..N {
-                sum[0][i] += uncorrelated * fresnel[i];
-                sum[1][i] += correlated * fresnel[i];
-            }
+            let shares = Masking::ALL.map(|masking| mass * masking.g2_over_g1(g1_v, g1));
+            add_place(&mut sum, shares, fresnel);
         });
         sum
     }

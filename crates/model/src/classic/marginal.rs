@@ -159,11 +159,8 @@ impl Across<'_> {
 
     /// Density at y; 0 where the in-plane slope is beyond the support.
     pub fn density(&self, y: f64) -> f64 {
-        if self.half > 0.0 {
-            0.5 * self.marginal.p22(libm::hypot(self.x, y)) / self.half
-        } else {
-            0.0
-        }
+        let density = || 0.5 * self.marginal.p22(libm::hypot(self.x, y)) / self.half;
+        if self.half > 0.0 { density() } else { 0.0 }
     }
 }
 
@@ -257,24 +254,14 @@ mod tests {
             for z in [0.0, 0.2, 1.0, 4.0] {
                 let w = shape.asinh_slope(z * ratio);
                 let at = marginal.beyond(z);
-                assert!(
-                    (at.tail - shape.tail(w)).abs() < 1e-9,
-                    "tail at {z}: {} {}",
-                    at.tail,
-                    shape.tail(w)
-                );
+                assert!((at.tail - shape.tail(w)).abs() < 1e-9, "tail at {z}");
                 assert!((at.excess * ratio - shape.excess(w)).abs() < 1e-9, "excess at {z}");
                 let visible = MarginalView::new(&marginal, z);
                 let exact = VisibleSlope::new(shape, UnitView::from_cotangent(z * ratio));
-                for x in [-1.0, -0.1, 0.3, 2.0] {
-                    let slope = SignedSlope {
-                        w: shape.asinh_slope(f64::abs(x * ratio)),
-                        sign: f64::signum(x),
-                    };
-                    assert!(
-                        (visible.shares(x).below - exact.cdf(slope)).abs() < 1e-8,
-                        "z {z}, x {x}"
-                    );
+                for x in [-1.0, -0.1, 0.3, 2.0_f64] {
+                    let w = shape.asinh_slope((x * ratio).abs());
+                    let want = exact.cdf(SignedSlope { w, sign: x.signum() });
+                    assert!((visible.shares(x).below - want).abs() < 1e-8, "z {z}, x {x}");
                 }
             }
         }
@@ -282,27 +269,26 @@ mod tests {
 
     #[test]
     fn the_quadrature_resolves_the_others() {
-        let schlick = Schlick::new(0.2).unwrap();
-        let (gauss, gtr) = (Gauss::new(0.2).unwrap(), Gtr::new(0.1, 1.2).unwrap());
-        let (flat, sharp) = (Sawicki::new(0.0).unwrap(), Sawicki::new(1e4).unwrap());
-        let (all, tolerance): ([&dyn Isotropic; 5], f64) =
-            ([&gauss, &gtr, &schlick, &flat, &sharp], 1e-9);
+        let all: [&dyn Isotropic; 5] = [
+            &Gauss::new(0.2).unwrap(),
+            &Gtr::new(0.1, 1.2).unwrap(),
+            &Schlick::new(0.2).unwrap(),
+            &Sawicki::new(0.0).unwrap(),
+            &Sawicki::new(1e4).unwrap(),
+        ];
         for d in all {
             let marginal = Marginal::new(d);
-            assert!((resolved(&marginal) - 1.0).abs() < tolerance, "{}", resolved(&marginal));
-            assert!((marginal.beyond(0.0).tail - 0.5).abs() < tolerance);
+            assert!((resolved(&marginal) - 1.0).abs() < 1e-9, "{}", resolved(&marginal));
+            assert!((marginal.beyond(0.0).tail - 0.5).abs() < 1e-9);
             // p is minus the derivative of the tail, and the tail that of the excess.
             for x in [0.3, 0.9, 1.7] {
-                let (a, b, at) =
-                    (marginal.beyond(x - 1e-4), marginal.beyond(x + 1e-4), marginal.beyond(x));
+                let [a, at, b] = [x - 1e-4, x, x + 1e-4].map(|x| marginal.beyond(x));
                 assert!(((a.tail - b.tail) / 2e-4 - at.density).abs() < 1e-6, "density at {x}");
                 assert!(((a.excess - b.excess) / 2e-4 - at.tail).abs() < 1e-6, "tail at {x}");
                 let across = marginal.across_at(x);
-                let rate = (across.tail(0.4 - 1e-4) - across.tail(0.4 + 1e-4)) / 2e-4;
-                assert!(
-                    (0.0..0.5).contains(&across.tail(0.4))
-                        && (rate - across.density(0.4)).abs() < 1e-5
-                );
+                let [a, tail, b] = [0.4 - 1e-4, 0.4, 0.4 + 1e-4].map(|y| across.tail(y));
+                assert!((0.0..0.5).contains(&tail));
+                assert!(((a - b) / 2e-4 - across.density(0.4)).abs() < 1e-5);
             }
         }
     }

@@ -16,7 +16,6 @@ mod schlick;
 mod tabulated;
 
 use core::f64::consts::{FRAC_PI_2, PI};
-use core::fmt;
 
 use crate::quadrature;
 use crate::student_t::StudentT;
@@ -33,7 +32,8 @@ pub use schlick::Schlick;
 pub use tabulated::{Tabulated, TabulatedError};
 
 /// A distribution's parameter outside its range.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, PartialEq, thiserror::Error)]
+#[error("{name} = {value}: must lie in {range}")]
 pub struct ClassicError {
     /// Name of the parameter.
     pub name: &'static str,
@@ -43,15 +43,7 @@ pub struct ClassicError {
     pub range: &'static str,
 }
 
-impl fmt::Display for ClassicError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} = {}: must lie in {}", self.name, self.value, self.range)
-    }
-}
-
 microfacet_core::debug_in_words!(ClassicError);
-
-impl core::error::Error for ClassicError {}
 
 /// An isotropic distribution of normals, a function of the polar angle θ ∈ [0, π/2] of the normal
 /// (radians).
@@ -205,10 +197,7 @@ mod tests {
             for u in [1e-6, 0.2, 0.5, 0.9, 0.999] {
                 let theta = d.sample_theta(u);
                 let back = projected(|t| d.d(t), d.half_angle().unwrap_or(1.0), theta);
-                assert!(
-                    (back - u).abs() < 1e-8,
-                    "{name}: {u} gives {theta}, whose share is {back}"
-                );
+                assert!((back - u).abs() < 1e-8, "{name}: {u} gives {theta}, of share {back}");
             }
         }
     }
@@ -246,12 +235,15 @@ mod tests {
         for e in [
             Gauss::new(0.0).unwrap_err(),
             Schlick::new(1.5).unwrap_err(),
-            Sawicki::new(-0.5).unwrap_err(),
+            Sawicki::new(-1e-9).unwrap_err(),
+            Sawicki::new(f64::INFINITY).unwrap_err(),
+            Sawicki::new(f64::NAN).unwrap_err(),
             Gtr::new(-0.1, 2.0).unwrap_err(),
             Gtr::new(0.1, f64::NAN).unwrap_err(),
             AshikhminShirley::new(-1.0, 1.0).unwrap_err(),
         ] {
-            assert!(e.to_string().contains("must lie in"), "{e}");
+            assert!(e.to_string().contains(&format!("must lie in {}", e.range)), "{e}");
         }
+        assert!(Sawicki::new(-0.0).is_ok());
     }
 }

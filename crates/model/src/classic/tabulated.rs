@@ -1,7 +1,6 @@
 //! A measured distribution: D at given angles, linear between them.
 
 use core::f64::consts::{FRAC_PI_2, PI};
-use core::fmt;
 
 use super::{Isotropic, bisect};
 
@@ -10,44 +9,30 @@ use super::{Isotropic, bisect};
 const GAP: f64 = 0.1;
 
 /// Why a measured distribution was refused. Rows count from 0.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, PartialEq, thiserror::Error)]
 pub enum TabulatedError {
     /// Fewer than three rows; how many.
+    #[error("{0} rows: a distribution needs at least 3")]
     TooFew(usize),
     /// An angle outside [0, π/2], or not above that of the row before; the row and the angle in
     /// radians.
+    #[error("row {0}: angle {1} must be in radians, within [0, pi/2], and above the row before")]
     Angle(usize, f64),
     /// A negative, infinite or NaN D; the row and the value.
+    #[error("row {0}: D = {1} must be finite and not negative")]
     Value(usize, f64),
     /// Two neighbouring angles in radians with a gap between them.
+    #[error(
+        "nothing between the angles {0} and {1} (radians): measure there, or interpolate before \
+         and say so"
+    )]
     Gap(f64, f64),
     /// D(0), or all of D, is zero: there is nothing to normalise.
+    #[error("D is zero at its smallest angle: nothing to normalise by")]
     Zero,
 }
 
-impl fmt::Display for TabulatedError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::TooFew(n) => write!(f, "{n} rows: a distribution needs at least 3"),
-            Self::Angle(i, x) => {
-                write!(
-                    f,
-                    "row {i}: angle {x} must be in radians, within [0, pi/2], and above the row before"
-                )
-            }
-            Self::Value(i, x) => write!(f, "row {i}: D = {x} must be finite and not negative"),
-            Self::Gap(a, b) => write!(
-                f,
-                "nothing between the angles {a} and {b} (radians): measure there, or interpolate before and say so"
-            ),
-            Self::Zero => write!(f, "D is zero at its smallest angle: nothing to normalise by"),
-        }
-    }
-}
-
 microfacet_core::debug_in_words!(TabulatedError);
-
-impl core::error::Error for TabulatedError {}
 
 /// A distribution given by its values D(θᵢ) up to a factor, linear between them, with its
 /// normalisation in closed form.

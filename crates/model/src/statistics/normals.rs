@@ -62,11 +62,8 @@ pub fn test_visible_normals(
         world_counts[world.cell(m)] += 1;
     }
     let n = samples as f64;
-    let lobe_expected: Vec<f64> = grid
-        .along_share
-        .iter()
-        .flat_map(|a| grid.across_share.iter().map(move |b| a * b * n))
-        .collect();
+    let row = |a: &f64| grid.across_share.iter().map(|b| a * b * n).collect::<Vec<f64>>();
+    let lobe_expected: Vec<f64> = grid.along_share.iter().flat_map(row).collect();
     // The quadrature can miss a cell of which only a corner faces the view: such a cell is pooled,
     // not taken as impossible.
     let world_expected: Vec<f64> = world.share.iter().map(|share| share.max(1e-12) * n).collect();
@@ -157,12 +154,8 @@ fn upper_edges(
 }
 
 fn shares(cdf: &[f64]) -> Vec<f64> {
-    let mut below = 0.0;
-    cdf.iter()
-        .map(|&value| std::mem::replace(&mut below, value))
-        .zip(cdf)
-        .map(|(low, high)| high - low)
-        .collect()
+    let below = [0.0].iter().chain(cdf);
+    cdf.iter().zip(below).map(|(high, low)| high - low).collect()
 }
 
 /// Cells of the hemisphere in the tangent frame, rings of unit slope by azimuth. They are fixed to
@@ -195,13 +188,11 @@ impl WorldGrid {
             let inner = if i == 0 { 0.0 } else { rings[i - 1] };
             for j in 0..WORLD[1] {
                 let from = j as f64 * step;
-                share.push(if outer.is_finite() {
-                    integrate([inner, outer], [from, from + step], density)
-                } else {
-                    // r = inner/w covers the tail; dr = inner/w² dw.
-                    integrate([0.0, 1.0], [from, from + step], |w, psi| {
-                        density(inner / w, psi) * inner / (w * w)
-                    })
+                // r = inner/w covers the tail; dr = inner/w² dw.
+                let tail = |w: f64, psi| density(inner / w, psi) * inner / (w * w);
+                share.push(match outer.is_finite() {
+                    true => integrate([inner, outer], [from, from + step], density),
+                    false => integrate([0.0, 1.0], [from, from + step], tail),
                 });
             }
         }
@@ -234,10 +225,8 @@ impl WorldGrid {
 /// so that a higher order gains nothing.
 fn integrate(a: [f64; 2], b: [f64; 2], f: impl Fn(f64, f64) -> f64) -> f64 {
     const POINTS: usize = 32;
-    let (da, db) = ((a[1] - a[0]) / POINTS as f64, (b[1] - b[0]) / POINTS as f64);
+    let [da, db] = [a, b].map(|[low, high]| (high - low) / POINTS as f64);
     let at = |from: f64, step: f64, i: usize| from + (i as f64 + 0.5) * step;
-    let row = |i| (0..POINTS).map(move |j| (i, j));
-    (0..POINTS).flat_map(row).map(|(i, j)| f(at(a[0], da, i), at(b[0], db, j))).sum::<f64>()
-        * da
-        * db
+    let all = (0..POINTS).flat_map(|i| (0..POINTS).map(move |j| (i, j)));
+    all.map(|(i, j)| f(at(a[0], da, i), at(b[0], db, j))).sum::<f64>() * da * db
 }

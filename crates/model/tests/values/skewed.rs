@@ -1,25 +1,20 @@
 //! Directional albedos of skewed lobes against untilted ones, brute force, sampling and identities.
 //!
-//! `cargo test --release -p microfacet-model --test albedo_skewed -- --ignored --nocapture` prints
+//! `cargo test --release -p microfacet-model --test values skewed:: -- --ignored --nocapture` prints
 //! the documented accuracy.
 
 use core::f64::consts::PI;
 
-use glam::DVec3;
-use microfacet_model::fresnel::schlick_weight;
 use microfacet_model::{
     AlbedoIntegrator, Ellipsoid, Masking, MicrofacetDistribution, ParameterError, Shape, Skew,
 };
 
-const FORMS: [Masking; 2] = [Masking::Uncorrelated, Masking::HeightCorrelated];
+use crate::{apart, assert_near, assert_share, brute_force, direction, schlick};
 
-fn schlick(cos: f64) -> [f64; 2] {
-    [1.0 - schlick_weight(cos), schlick_weight(cos)]
-}
-
-fn direction(cos: f64, phi: f64) -> DVec3 {
-    let sin = f64::sqrt(1.0 - cos * cos);
-    DVec3::new(sin * libm::cos(phi), sin * libm::sin(phi), cos)
+/// Integrators of one shape for two tolerances.
+fn integrators(gamma: f64, tolerances: [f64; 2]) -> [AlbedoIntegrator; 2] {
+    let shape = Shape::new(gamma).unwrap();
+    tolerances.map(|tolerance| AlbedoIntegrator::new(shape, tolerance))
 }
 
 /// Roughness p and r along two axes, a shear, and the mean slope in units of them.
@@ -31,9 +26,7 @@ fn skewed(gamma: f64, p: f64, r: f64, mean: [f64; 2]) -> Ellipsoid {
 #[test]
 fn without_a_tilt_it_is_the_anisotropic_albedo() {
     for gamma in [1.52, 2.0, 3.6, f64::INFINITY] {
-        let shape = Shape::new(gamma).unwrap();
-        let (isotropic, integrator) =
-            (AlbedoIntegrator::new(shape, 1e-10), AlbedoIntegrator::new(shape, 1e-7));
+        let [isotropic, integrator] = integrators(gamma, [1e-10, 1e-7]);
         for sigma in [[0.3, 0.3], [0.1, 0.6], [2.0, 0.7]] {
             for turn in [0.0, 0.8] {
                 let ellipsoid =
@@ -43,40 +36,16 @@ fn without_a_tilt_it_is_the_anisotropic_albedo() {
                     let want =
                         isotropic.reflection_anisotropic(sigma, cos, phi + turn, schlick).unwrap();
                     let got = integrator.reflection_skewed(&ellipsoid, cos, phi, schlick).unwrap();
-                    for form in FORMS {
-                        for (a, b) in got.of(form).iter().zip(want.of(form)) {
-                            let error = (a - b).abs();
-                            assert!(
-                                error < 1e-7 && error < got.error + want.error + 1e-12,
-                                "gamma {gamma}, sigma {sigma:?}, cos {cos}: {a} against {b}, estimate {:e}",
-                                got.error
-                            );
-                        }
-                    }
+                    let error = apart(&got, &want);
+                    assert!(
+                        error < 1e-7 && error < got.error + want.error + 1e-12,
+                        "gamma {gamma}, sigma {sigma:?}, cos {cos}: {error:e} of {:e}",
+                        got.error
+                    );
                 }
             }
         }
     }
-}
-
-/// E by brute force: f cos θ_l with F = 1 over the hemisphere of l, in solid angle, by the midpoint
-/// rule.
-fn brute_force(ellipsoid: &Ellipsoid, v: DVec3, weight: impl Fn(f64) -> f64) -> [f64; 2] {
-    let (rings, sectors) = (500, 500);
-    let mut sum = [0.0; 2];
-    for i in 0..rings {
-        let (sin, cos) = libm::sincos(0.5 * PI * (i as f64 + 0.5) / rings as f64);
-        for j in 0..sectors {
-            let (sin_phi, cos_phi) = libm::sincos(2.0 * PI * (j as f64 + 0.5) / sectors as f64);
-            let l = DVec3::new(sin * cos_phi, sin * sin_phi, cos);
-            let m = (v + l).normalize();
-            let part = sin * ellipsoid.d(m) * weight(v.dot(m)) / (4.0 * v.z);
-            for (sum, form) in sum.iter_mut().zip(FORMS) {
-                *sum += part * ellipsoid.g2(v, l, form);
-            }
-        }
-    }
-    sum.map(|x| x * 0.5 * PI / rings as f64 * 2.0 * PI / sectors as f64)
 }
 
 #[test]
@@ -92,15 +61,11 @@ fn it_is_the_integral_over_light_directions() {
         ] {
             let ellipsoid = skewed(gamma, p, r, mean);
             let albedo = integrator.reflection_skewed(&ellipsoid, cos, phi, schlick).unwrap();
-            let want = brute_force(&ellipsoid, direction(cos, phi), |_| 1.0);
-            for (form, want) in FORMS.into_iter().zip(want) {
+            let want = brute_force(&ellipsoid, direction(cos, phi), 500);
+            for (form, want) in Masking::ALL.into_iter().zip(want) {
                 let got = albedo.of(form)[0] + albedo.of(form)[1];
-                let error = (got - want).abs();
                 // The midpoint rule is of second order in steps of 3e-3 and 1.3e-2.
-                assert!(
-                    error < 6e-6,
-                    "gamma {gamma}, mean {mean:?}, cos {cos}: {got} against {want}"
-                );
+                assert_near(got, want, 6e-6, format!("gamma {gamma}, mean {mean:?}, cos {cos}"));
             }
         }
     }
@@ -127,19 +92,15 @@ fn it_is_the_mean_weight_of_sampled_reflections() {
                 let u = [(i * 0.754877666246692760) % 1.0, (i * 0.569840290998053266) % 1.0];
                 let m = ellipsoid.sample_visible_normal(v, u);
                 let l = 2.0 * v.dot(m) * m - v;
-                for (sum, form) in sum.iter_mut().zip(FORMS) {
+                for (sum, form) in sum.iter_mut().zip(Masking::ALL) {
                     *sum += ellipsoid.g2(v, l, form) * area / v.z / POINTS as f64;
                 }
             }
             let albedo = integrator.reflection_skewed(&ellipsoid, cos, phi, |_| [1.0]).unwrap();
-            for (form, want) in FORMS.into_iter().zip(sum) {
-                let error = (albedo.of(form)[0] - want).abs();
+            for (form, want) in Masking::ALL.into_iter().zip(sum) {
+                let at = format!("gamma {gamma}, mean {mean:?}, cos {cos}");
                 // Of 20,000 lattice points; measured 1.3e-4.
-                assert!(
-                    error < 3e-4,
-                    "gamma {gamma}, mean {mean:?}, cos {cos}: {:?} against {want}",
-                    albedo.of(form)
-                );
+                assert_near(albedo.of(form)[0], want, 3e-4, at);
             }
         }
     }
@@ -148,24 +109,18 @@ fn it_is_the_mean_weight_of_sampled_reflections() {
 #[test]
 fn the_domain_has_an_estimate_that_holds() {
     for gamma in [1.501, 1.6, 2.0, 3.6, f64::INFINITY] {
-        let shape = Shape::new(gamma).unwrap();
-        let (coarse, fine) =
-            (AlbedoIntegrator::new(shape, 1e-5), AlbedoIntegrator::new(shape, 1e-6));
+        let both = integrators(gamma, [1e-5, 1e-6]);
         for (p, r) in [(0.01, 0.01), (0.6, 0.05), (3.0, 2.0)] {
             for mean in [[0.1, 0.0], [-0.6, 0.8], [1.5, 3.0]] {
                 let ellipsoid = skewed(gamma, p, r, mean);
                 for (cos, phi) in [(0.0, 1.0), (0.01, 3.0), (0.1, 5.0), (0.7, 2.0), (1.0, 0.0)] {
-                    let [a, b] = [&coarse, &fine]
+                    let [a, b] = both
+                        .each_ref()
                         .map(|x| x.reflection_skewed(&ellipsoid, cos, phi, schlick).unwrap());
                     let name = format!("gamma {gamma}, sigma {p} {r}, mean {mean:?}, cos {cos}");
                     assert!(a.error < 1e-4, "{name}: estimate {:e}", a.error);
-                    for form in FORMS {
-                        for (x, y) in a.of(form).iter().zip(b.of(form)) {
-                            assert!((x - y).abs() < a.error + b.error, "{name}: {x} against {y}");
-                        }
-                        let e = a.of(form)[0] + a.of(form)[1];
-                        assert!((0.0..=1.0 + 1e-6).contains(&e), "{name}: E = {e}");
-                    }
+                    assert!(apart(&a, &b) < a.error + b.error, "{name}: {a:?} for {b:?}");
+                    assert_share(&a, 1e-6, name);
                 }
             }
         }
@@ -181,10 +136,8 @@ fn what_cannot_be_seen_has_no_albedo() {
         let albedo = integrator.reflection_skewed(&ellipsoid, cos, PI, schlick).unwrap();
         assert_eq!((albedo.uncorrelated, albedo.height_correlated), ([0.0; 2], [0.0; 2]));
     }
-    assert!(
-        integrator.reflection_skewed(&ellipsoid, 0.0, 0.0, |_| [1.0]).unwrap().height_correlated[0]
-            > 0.99
-    );
+    let seen = integrator.reflection_skewed(&ellipsoid, 0.0, 0.0, |_| [1.0]).unwrap();
+    assert!(seen.height_correlated[0] > 0.99);
 }
 
 #[test]
@@ -209,9 +162,7 @@ fn accuracy_over_the_domain() {
     let (mut views, mut missed, mut checked, mut outside) = (0, 0, 0, 0);
     let (mut estimate, mut worst, mut points) = (0.0_f64, 0.0_f64, 0);
     for gamma in [1.501, 1.6, 2.0, 4.0, f64::INFINITY] {
-        let shape = Shape::new(gamma).unwrap();
-        let (coarse, fine) =
-            (AlbedoIntegrator::new(shape, 1e-5), AlbedoIntegrator::new(shape, 1e-7));
+        let [coarse, fine] = integrators(gamma, [1e-5, 1e-7]);
         for (p, r) in [(0.01, 0.01), (0.05, 0.3), (0.5, 0.3), (1.0, 0.1), (3.0, 3.0)] {
             for (length, turn) in
                 (0..10).map(|i| ([0.0, 0.1, 0.5, 2.0, 4.0][i / 2], [0.3, 2.0][i % 2]))
@@ -229,14 +180,13 @@ fn accuracy_over_the_domain() {
                         (views, points) = (views + 1, points + count.get());
                         missed += i32::from(a.error > 1e-5);
                         estimate = estimate.max(a.error);
-                        for form in FORMS {
-                            assert!((0.0..=1.0 + 1e-6).contains(&a.of(form)[0]), "{:?}", a);
+                        for form in Masking::ALL {
+                            assert!((0.0..=1.0 + 1e-6).contains(&a.of(form)[0]), "{a:?}");
                         }
                         if views % 7 == 0 {
                             let b =
                                 fine.reflection_skewed(&ellipsoid, cos, phi, |_| [1.0]).unwrap();
-                            let error = FORMS.map(|form| (a.of(form)[0] - b.of(form)[0]).abs());
-                            let error = error[0].max(error[1]);
+                            let error = apart(&a, &b);
                             worst = worst.max(error);
                             (checked, outside) =
                                 (checked + 1, outside + i32::from(error > a.error + b.error));

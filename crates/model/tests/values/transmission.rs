@@ -5,12 +5,10 @@ use microfacet_model::{AlbedoIntegrator, Masking, MicrofacetDistribution, Shape,
 
 use glam::DVec3;
 
+use crate::{assert_near, direction};
+
 const GAMMAS: [f64; 5] = [1.55, 2.0, 3.0, 11.0, f64::INFINITY];
 const ETAS: [f64; 8] = [0.3, 0.67, 0.9, 0.999, 1.001, 1.1, 1.5, 4.0];
-
-fn view(cos: f64) -> DVec3 {
-    DVec3::new(((1.0 - cos) * (1.0 + cos)).sqrt(), 0.0, cos)
-}
 
 /// T by the midpoint rule over the two random numbers of a visible normal.
 fn brute_force(material: &StudentT, pane: Dielectric, v: DVec3, masking: Masking) -> f64 {
@@ -52,14 +50,11 @@ fn agrees_with_brute_force() {
         let pane = Dielectric::new(eta).unwrap();
         let got = integrator.transmission(sigma, cos, pane).unwrap();
         assert!(got.error < 2e-6, "{gamma} {eta} {sigma} {cos}: estimate {:e}", got.error);
-        for masking in [Masking::Uncorrelated, Masking::HeightCorrelated] {
-            let want = brute_force(&material, pane, view(cos), masking);
-            let error = (got.of(masking)[0] - want).abs();
+        for masking in Masking::ALL {
+            let want = brute_force(&material, pane, direction(cos, 0.0), masking);
+            let at = format!("gamma {gamma}, eta {eta}, sigma {sigma}, cos {cos}");
             // The midpoint rule's error at the edges of the domain.
-            assert!(
-                error < 1e-3,
-                "gamma {gamma}, eta {eta}, sigma {sigma}, cos {cos}: {want}, off by {error:e}"
-            );
+            assert_near(got.of(masking)[0], want, 1e-3, at);
         }
     }
 }
@@ -92,12 +87,9 @@ fn as_much_passes_either_way() {
                 })
             };
             for (enters, leaves) in of(pane).into_iter().zip(of(pane.reversed())) {
-                let error = (enters - eta * eta * leaves).abs();
+                let at = format!("gamma {gamma}, sigma {sigma}, eta {eta}");
                 // The midpoint rule's error at the kink of what leaves, times η².
-                assert!(
-                    error < 2e-5 * eta * eta,
-                    "gamma {gamma}, sigma {sigma}, eta {eta}: {enters}, off by {error:e}"
-                );
+                assert_near(enters, eta * eta * leaves, 2e-5 * eta * eta, at);
             }
         }
     }
@@ -110,18 +102,15 @@ fn without_a_difference_all_that_is_not_shadowed_passes() {
         let integrator = AlbedoIntegrator::new(Shape::new(gamma).unwrap(), 1e-7);
         for (sigma, cos) in [(0.01, 0.2), (0.3, 0.05), (1.0, 0.6), (3.0, 1.0)] {
             let material = StudentT::new(sigma, gamma).unwrap();
-            let lambda = material.lambda(view(cos));
+            let lambda = material.lambda(direction(cos, 0.0));
             let got = integrator.transmission(sigma, cos, pane).unwrap();
             for (masking, want) in [
                 (Masking::Uncorrelated, 1.0 / (1.0 + lambda)),
                 (Masking::HeightCorrelated, (1.0 + lambda) / (1.0 + 2.0 * lambda)),
             ] {
-                let error = (got.of(masking)[0] - want).abs();
-                assert!(
-                    error < got.error && got.error < 1e-7,
-                    "gamma {gamma}, sigma {sigma}, cos {cos}: {want}, off by {error:e}, estimate {:e}",
-                    got.error
-                );
+                let at = format!("gamma {gamma}, sigma {sigma}, cos {cos}");
+                assert!(got.error < 1e-7, "{at}: {:e}", got.error);
+                assert_near(got.of(masking)[0], want, got.error, at);
             }
         }
     }
@@ -140,23 +129,14 @@ fn with_reflection_at_most_everything() {
                     let weight = |mu: f64| [pane.reflectance(mu)];
                     let reflected =
                         integrator.reflection_with_kink(sigma, cos, kink, weight).unwrap();
-                    assert!(
-                        passed.error < 1e-4,
-                        "gamma {gamma}, eta {eta}, sigma {sigma}, cos {cos}: {passed:?}"
-                    );
-                    for masking in [Masking::Uncorrelated, Masking::HeightCorrelated] {
+                    let at = format!("gamma {gamma}, eta {eta}, sigma {sigma}, cos {cos}");
+                    assert!(passed.error < 1e-4, "{at}: {passed:?}");
+                    for masking in Masking::ALL {
                         let [t, r] = [&passed, &reflected].map(|albedo| albedo.of(masking)[0]);
                         let slack = passed.error + reflected.error;
-                        assert!(
-                            t >= 0.0 && r >= 0.0 && t + r <= 1.0 + slack,
-                            "gamma {gamma}, eta {eta}: {t} + {r}"
-                        );
+                        assert!(t >= 0.0 && r >= 0.0 && t + r <= 1.0 + slack, "{at}: {t} + {r}");
                         if sigma == 1e-6 && gamma == f64::INFINITY && cos > 1e-3 {
-                            let smooth = 1.0 - pane.reflectance(cos);
-                            assert!(
-                                (t - smooth).abs() < 1e-4,
-                                "eta {eta}, cos {cos}: {t} for {smooth}"
-                            );
+                            assert_near(t, 1.0 - pane.reflectance(cos), 1e-4, &at);
                         }
                     }
                 }

@@ -1,25 +1,13 @@
 //! The model against values computed elsewhere with 60 to 200 digits.
-//!
-//! `tests/data` holds excerpts. Set `MICROFACET_REFERENCE` to a folder with the complete files of
-//! the same names to test against those.
 
 use glam::DVec3;
 use microfacet_model::{
     MicrofacetDistribution, Shape, StudentT, UnitView, VisibleSlope, across_quantile,
 };
 
-/// The rows of a data file as numbers, header dropped.
 fn rows(name: &str) -> Vec<Vec<f64>> {
-    let folder = std::env::var("MICROFACET_REFERENCE")
-        .unwrap_or_else(|_| format!("{}/tests/data", env!("CARGO_MANIFEST_DIR")));
-    let text = std::fs::read_to_string(format!("{folder}/{name}")).expect("reference file");
-    let rows: Vec<Vec<f64>> = text
-        .lines()
-        .skip(1)
-        .map(|row| row.split(',').map(|x| x.parse().expect("number")).collect())
-        .collect();
-    assert!(rows.len() >= 25, "{name} has too few rows to mean anything");
-    rows
+    let number = |x: &String| x.parse().expect("number");
+    crate::rows(name).iter().map(|row| row.iter().map(number).collect()).collect()
 }
 
 #[test]
@@ -29,7 +17,7 @@ fn lambda_and_g1() {
         let &[sigma_x, sigma_y, gamma, theta, phi, lambda, g1] = row.as_slice() else {
             panic!("columns")
         };
-        let (sin, cos) = (libm::sin(theta), libm::cos(theta));
+        let (sin, cos) = libm::sincos(theta);
         let v = DVec3::new(sin * libm::cos(phi), sin * libm::sin(phi), cos);
         let material = StudentT::new([sigma_x, sigma_y], gamma).unwrap();
         let (got, got_g1) = (material.lambda(v), material.g1(v));
