@@ -11,9 +11,9 @@
 //! | [`LobeSpec`] | a lobe, as recipes, plans and files state it |
 //! | [`Index`] | which of the numbered sets of a library holds a material |
 //!
-//! Whoever bakes a set (`microfacet-baker`) and whoever looks it up (`microfacet-sampler`) meet
-//! here, so that a coordinate is one formula for both. A renderer needs this crate only to write
-//! sets, or to read one table by itself:
+//! `microfacet-baker`, which bakes sets, and `microfacet-sampler`, which looks them up, share it, so
+//! that a coordinate is one formula for both. A renderer needs this crate only to write sets, or to
+//! read one table by itself:
 //!
 //! ```
 //! # fn main() -> Result<(), microfacet_tables::LoadError> {

@@ -51,20 +51,17 @@ impl Coordinate for Azimuth {
          2p/π of |sin δ| and |cos δ|"
     }
 
-    fn check(&self) -> Result<(), &'static str> {
-        if self.sigma.iter().all(|x| (1e-12..=1e6).contains(x)) && self.turn.abs() <= 7.0 {
-            Ok(())
-        } else {
-            Err("sigma or turn out of range")
-        }
+    fn fault(&self) -> Option<&'static str> {
+        let sound = self.sigma.iter().all(|x| (1e-12..=1e6).contains(x)) && self.turn.abs() <= 7.0;
+        (!sound).then_some("sigma or turn out of range")
     }
 
     fn placement(&self) -> Placement {
         if self.fold { Placement::Even } else { Placement::Closed }
     }
 
-    fn check_count(&self, _: usize) -> Result<(), &'static str> {
-        Ok(())
+    fn count_fault(&self, _: usize) -> Option<&'static str> {
+        None
     }
 }
 

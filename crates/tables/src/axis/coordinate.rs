@@ -7,9 +7,9 @@ pub(crate) trait Coordinate {
     /// The formula in one line, with the names of the parameters, as in files and `docs/format.md`.
     fn formula(&self) -> &'static str;
 
-    /// Checks that the parameters are in range; the error says what is wrong.
-    fn check(&self) -> Result<(), &'static str> {
-        Ok(())
+    /// What is wrong with the parameters.
+    fn fault(&self) -> Option<&'static str> {
+        None
     }
 
     /// Smallest and largest t.
@@ -22,13 +22,9 @@ pub(crate) trait Coordinate {
         Placement::Even
     }
 
-    /// Checks a number of nodes other than 0; the error says what is wrong.
-    fn check_count(&self, n: usize) -> Result<(), &'static str> {
-        if n < 2 && self.placement() == Placement::Even {
-            Err("needs at least two nodes")
-        } else {
-            Ok(())
-        }
+    /// What is wrong with a number of nodes other than 0.
+    fn count_fault(&self, n: usize) -> Option<&'static str> {
+        (n < 2 && self.placement() == Placement::Even).then_some("needs at least two nodes")
     }
 
     /// The number of values along an axis of n nodes.

@@ -12,17 +12,11 @@ use super::view_blend::{fourth_roots, harmonic, kappa, terms};
 
 /// The view coordinate of the dense side of an interface of index η, t ∈ [0, 1], in two or three
 /// parts of equal width; a polynomial reads nodes of one part only.
+/// [`Mapping::formula`](super::Mapping::formula) states it.
 ///
 /// Level facets reflect totally below μ_c = √(1 − 1/η²), and upright ones, of which there are many
 /// where tails are heavy, above μ_u = 1/η. Two parts meet at μ_c. Three meet at the smaller and at
 /// the larger of μ_c and μ_u, whose order changes at η = √2, where t has a kink as a function of η.
-/// With x, h and κ as for [`ViewBlend`](super::ViewBlend), p = share·x + (1−share)·h,
-/// y = share·x^¼ + (1−share)·h^¼, S(q) = asinh(√q/δ)/asinh(1/δ), δ² = kink·σ + sharp², the harmonic
-/// sum μ₀ = 1/(1/floor + 1/(slope·σ) + 1/μ_c), and q = (μ−a)/(b−a) in a part from a to b, the
-/// coordinate within a part is
-/// (1−root)(y(μ)−y(a))/(y(b)−y(a)) + root (1−S(1−q)) in the first,
-/// (1−2w)(p(μ)−p(a))/(p(b)−p(a)) + w (1+S(q)−S(1−q)), w = between·root, in the second of three, and
-/// (1−root)(p(μ)−p(a))/(p(b)−p(a)) + root S(q) in the last.
 ///
 /// Above the first part there are no fourth roots, which are steep in η near 1: with them tables
 /// over all indices erred by 0.12 instead of 1e-3 (σ 0.454, γ 3, twenty indices).
@@ -224,7 +218,7 @@ impl Coordinate for CriticalBlend {
          δ = √(kink·σ + sharp²), μ₀ = 1/(1/floor + 1/(slope·σ) + 1/μ_c), 1/η no less than μ₀, x, h and κ of view_blend"
     }
 
-    fn check(&self) -> Result<(), &'static str> {
+    fn fault(&self) -> Option<&'static str> {
         let Self { share, scale, heavy, floor, slope, root, kink, sharp, between } = *self;
         // A coordinate that is no wider than rounding has no nodes.
         let width = if sharp > 0.0 { sharp } else { kink };
@@ -238,20 +232,16 @@ impl Coordinate for CriticalBlend {
             && between >= 0.0
             && 2.0 * between * root < 1.0
             && floor < 0.5;
-        if sound { Ok(()) } else { Err("a parameter of the view coordinate is out of range") }
+        (!sound).then_some("a parameter of the view coordinate is out of range")
     }
 
-    fn check_count(&self, n: usize) -> Result<(), &'static str> {
+    fn count_fault(&self, n: usize) -> Option<&'static str> {
         let parts = self.parts();
-        match n > parts * (SIX - 1) && n % parts == 1 {
-            true => Ok(()),
-            false if parts == 2 => {
-                Err("needs an odd number of nodes, eleven or more: six in either half")
-            }
-            false => {
-                Err("needs one node more than a multiple of three, 16 or more: six in each third")
-            }
-        }
+        let sound = n > parts * (SIX - 1) && n % parts == 1;
+        (!sound).then_some(match parts {
+            2 => "needs an odd number of nodes, eleven or more: six in either half",
+            _ => "needs one node more than a multiple of three, 16 or more: six in each third",
+        })
     }
 }
 
@@ -262,22 +252,17 @@ mod tests {
     #[test]
     fn there_and_back() {
         let blends = [CriticalBlend::BAKED, CriticalBlend::UPRIGHT];
-        for (eta, blend) in
-            [1.0001, 1.2, 1.5, 4.0].into_iter().flat_map(|eta| blends.map(|all| (eta, all)))
-        {
-            for (sigma, gamma) in [(1e-6, 2.0), (0.3, 1.501), (2.0, f64::INFINITY)] {
+        let surfaces = [(1e-6, 2.0), (0.3, 1.501), (2.0, f64::INFINITY)];
+        let all = blends.into_iter().flat_map(|blend| surfaces.map(|surface| (blend, surface)));
+        for (blend, (sigma, gamma)) in all {
+            for eta in [1.0001, 1.2, 1.5, 4.0] {
                 let view = blend.prepare(sigma, gamma, 1.0 / eta);
                 assert_eq!(view.coordinate(1.0), 1.0);
                 for t in [0.0, 0.1, 0.4, 0.5, 0.6, 0.9, 1.0] {
                     let cos = view.quantity(t);
-                    let ulp = (view.coordinate(cos.min(1.0))
-                        - view.coordinate(cos * (1.0 - 1e-15)))
-                    .abs();
-                    let back = view.coordinate(cos);
-                    assert!(
-                        (back - t).abs() < 1e-12 + 2.0 * ulp,
-                        "eta {eta}, sigma {sigma}, {t}: {back}"
-                    );
+                    let [back, below] = [cos, cos * (1.0 - 1e-15)].map(|x| view.coordinate(x));
+                    let tolerance = 1e-12 + 2.0 * (back - below).abs();
+                    assert!((back - t).abs() < tolerance, "eta {eta}, sigma {sigma}, {t}: {back}");
                 }
             }
         }
@@ -285,11 +270,8 @@ mod tests {
 
     #[test]
     fn parts_do_not_share_windows() {
-        for (blend, eta) in [
-            (CriticalBlend::BAKED, 1.5),
-            (CriticalBlend::UPRIGHT, 1.2),
-            (CriticalBlend::UPRIGHT, 1.5),
-        ] {
+        let [two, three] = [CriticalBlend::BAKED, CriticalBlend::UPRIGHT];
+        for (blend, eta) in [(two, 1.5), (three, 1.2), (three, 1.5)] {
             let view = blend.prepare(0.3, 2.0, 1.0 / eta);
             let (n, critical) = (10 * blend.parts() + 1, sqrt64(1.0 - 1.0 / (eta * eta)));
             let has = |cos: f64| view.ends().iter().any(|end| (end - cos).abs() < 1e-15);
@@ -300,7 +282,7 @@ mod tests {
             }
         }
         // For η = 1 the first part is a point, and for η = ∞ the last.
-        for blend in [CriticalBlend::BAKED, CriticalBlend::UPRIGHT] {
+        for blend in [two, three] {
             let none = blend.prepare(0.3, 2.0, 1.0);
             assert_eq!((none.six(0.0, 31).0, none.quantity(0.0)), (31 / blend.parts(), 0.0));
             let mirror = blend.prepare(0.3, 2.0, 0.0);

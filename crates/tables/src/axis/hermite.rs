@@ -244,9 +244,7 @@ mod tests {
         make_monotone(&mut run);
         assert_eq!(run, [[0.2, 0.0], [0.2, 0.0], [0.5, 3.0 * (0.5 - 0.2_f32)]]);
         assert_eq!(locate(f32::NAN, 4).0, 0);
-        assert_eq!(
-            [locate(4.0, 4), locate(-0.5, 4), locate(9.0, 4)],
-            [(3, 1.0), (0, -0.5), (3, 6.0)]
-        );
+        let located = [4.0, -0.5, 9.0].map(|x| locate(x, 4));
+        assert_eq!(located, [(3, 1.0), (0, -0.5), (3, 6.0)]);
     }
 }

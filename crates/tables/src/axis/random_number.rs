@@ -97,11 +97,9 @@ mod tests {
         for u in [u, u.map(|u| 1.0 - u)] {
             let got = roots(f32x4::new(u)).to_array();
             let scale = MirroredRoot::scale(16);
-            let want: [f32; 4] = core::array::from_fn(|i| 16.0 * MirroredRoot::coordinate(u[i]));
-            assert!(
-                (0..4).all(|i| (got[i] * scale - want[i]).abs() < 4e-6),
-                "{got:?} for {want:?}"
-            );
+            let want = u.map(|u| 16.0 * MirroredRoot::coordinate(u));
+            let near = (0..4).all(|i| (got[i] * scale - want[i]).abs() < 4e-6);
+            assert!(near, "{got:?} for {want:?}");
         }
         assert_eq!(roots(f32x4::new([-0.1, 1.5, 0.0, 1.0])), f32x4::ZERO);
     }

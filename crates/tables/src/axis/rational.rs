@@ -86,8 +86,8 @@ impl Coordinate for Rational {
         "q = z/(z + κ), κ = scale/(2−s); where crowded, t = 1 − √(1−q)"
     }
 
-    fn check(&self) -> Result<(), &'static str> {
-        if positive(&[self.scale]) { Ok(()) } else { Err("scale out of range") }
+    fn fault(&self) -> Option<&'static str> {
+        (!positive(&[self.scale])).then_some("scale out of range")
     }
 }
 
@@ -126,17 +126,10 @@ mod tests {
                 let plain = Rational { crowded: false, ..axis }
                     .coordinate(f64::from(z / rho), f64::from(kappa));
                 let slope = axis.of_slope(z, kappa * rho) * cells;
-                let all = [
-                    (one, exact),
-                    (t.to_array()[1], exact),
-                    (q.to_array()[1], plain),
-                    (slope, exact),
-                ];
-                for (got, want) in all {
-                    assert!(
-                        (f64::from(got / cells) - want).abs() < 2e-7,
-                        "{rho}, {z}: {got} for {want}"
-                    );
+                let [q, t] = [q, t].map(|x| x.to_array()[1]);
+                for (got, want) in [(one, exact), (t, exact), (q, plain), (slope, exact)] {
+                    let off = (f64::from(got / cells) - want).abs();
+                    assert!(off < 2e-7, "{rho}, {z}: {got} for {want}");
                 }
             }
         }

@@ -44,18 +44,3 @@ impl Coordinate for ReflectanceRoot {
         Placement::Free
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn there_and_back() {
-        for eta in [1.0, 1.0001, 1.33, 1.5, 2.4, 40.0, f64::INFINITY] {
-            let back = ReflectanceRoot.quantity(ReflectanceRoot.coordinate(eta));
-            assert!(back == eta || (back / eta - 1.0).abs() < 1e-13, "{eta}: {back}");
-        }
-        let t = ReflectanceRoot.coordinate(1.5);
-        assert!((libm::acos(1.0 - 2.0 * sqrt64(0.2)) / core::f64::consts::PI - t).abs() < 1e-15);
-    }
-}

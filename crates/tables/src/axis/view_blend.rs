@@ -11,11 +11,8 @@ use microfacet_core::math::sqrt64;
 use super::coordinate::{Coordinate, bisect, positive};
 use super::lagrange::SIX;
 
-/// The view coordinate of albedo tables, t ∈ [0, 1] of μ = cos θ_v ∈ [μ₀, 1].
-///
-/// t = (y(μ) − y(μ₀))/(1 − y(μ₀)) with μ₀ = floor·slope·σ/(floor + slope·σ),
-/// y = weight·x + normal·ν/(ν + √(1−μ²)) + (1 − weight − normal)(share·x^¼ + (1−share)·h^¼),
-/// x = μ/(μ + κσ√(1−μ²)), κ = scale + heavy/(2γ−3), h = μ/(1 + √(1−μ²)), ν = spread·σ.
+/// The view coordinate of albedo tables, t ∈ [0, 1] of μ = cos θ_v ∈ [μ₀, 1], as
+/// [`Mapping::formula`](super::Mapping::formula) states it.
 ///
 /// h follows the view; x follows z = cot θ_v/σ and, as γ → 3/2, the ever wider reach of masking; ν
 /// resolves the change at normal incidence, and the fourth roots resolve grazing views.
@@ -155,18 +152,18 @@ impl Coordinate for ViewBlend {
          scale + heavy/(2γ−3), ν = spread·σ"
     }
 
-    fn check(&self) -> Result<(), &'static str> {
+    fn fault(&self) -> Option<&'static str> {
         let Self { weight, normal, share, scale, heavy, spread, floor, slope } = *self;
         let sound = positive(&[weight, normal, scale, spread, floor, slope])
             && weight + normal < 1.0
             && (0.0..=1.0).contains(&share)
             && (0.0..1e6).contains(&heavy)
             && floor < 0.5;
-        if sound { Ok(()) } else { Err("a parameter of the view coordinate is out of range") }
+        (!sound).then_some("a parameter of the view coordinate is out of range")
     }
 
-    fn check_count(&self, n: usize) -> Result<(), &'static str> {
-        if n < SIX { Err("has fewer than six nodes") } else { Ok(()) }
+    fn count_fault(&self, n: usize) -> Option<&'static str> {
+        (n < SIX).then_some("has fewer than six nodes")
     }
 }
 
@@ -183,14 +180,11 @@ mod tests {
                 assert_eq!(view.coordinate(view.floor()), 0.0);
                 for t in [0.0, 1e-3, 0.1, 0.5, 0.9, 1.0] {
                     let cos = view.quantity(t);
-                    let (back, step) = (view.coordinate(cos), 1e-15);
                     // Near the normal t changes with sin θ, in which an ulp of cos θ is 1e-8.
-                    let ulp = view.coordinate(cos)
-                        - view.coordinate((cos * (1.0 - step)).max(view.floor()));
-                    assert!(
-                        (back - t).abs() <= 1e-14 + 2.0 * ulp,
-                        "sigma {sigma}, gamma {gamma}, {t}: {back}"
-                    );
+                    let below = (cos * (1.0 - 1e-15)).max(view.floor());
+                    let [back, below] = [cos, below].map(|x| view.coordinate(x));
+                    let near = (back - t).abs() <= 1e-14 + 2.0 * (back - below);
+                    assert!(near, "sigma {sigma}, gamma {gamma}, {t}: {back}");
                 }
                 let alone = ViewBlend::BAKED.of_shape(gamma).prepare_shaped(sigma);
                 assert_eq!(alone.coordinate(0.4), view.coordinate(0.4));

@@ -64,33 +64,22 @@ pub fn decode(bytes: &[u8], verify: bool) -> Result<(Provenance, Vec<Table>), Lo
         invalid(format!("a safetensors file, but without the `{KEY}` document of a table set"))
     })?;
     check_version(json)?;
-    match if verify { checksum::is_sealed(bytes) } else { Some(true) } {
-        Some(true) => {}
-        Some(false) => {
-            return Err(invalid(
-                "checksum does not match: the file is damaged; copy it again or bake again",
-            ));
-        }
-        None => return Err(invalid("no checksum")),
+    if verify && !checksum::is_sealed(bytes).ok_or_else(|| invalid("no checksum"))? {
+        let why = "checksum does not match: the file is damaged; copy it again or bake again";
+        return Err(invalid(why));
     }
     let tensors = SafeTensors::deserialize(bytes).map_err(invalid)?;
     let document = Document::from_json(json)?;
     let tables = document.tables(|stack, i| {
         let tensor =
             tensors.tensor(&stack.name).map_err(|_| "no tensor of that name".to_string())?;
-        if tensor.dtype() != stack.precision.dtype() {
-            return Err(format!(
-                "stored as {:?}, described as {:?}",
-                tensor.dtype(),
-                stack.precision
-            ));
+        let (stored, stated) = (tensor.dtype(), stack.precision);
+        if stored != stated.dtype() {
+            return Err(format!("stored as {stored:?}, described as {stated:?}"));
         }
-        let shape = stack.shape(&document.axes).unwrap_or_default();
-        if shape != tensor.shape() {
-            return Err(format!(
-                "tensor of shape {:?}, axes and channels of {shape:?}",
-                tensor.shape()
-            ));
+        let (got, shape) = (tensor.shape(), stack.shape(&document.axes).unwrap_or_default());
+        if got != shape {
+            return Err(format!("tensor of shape {got:?}, axes and channels of {shape:?}"));
         }
         let bytes = tensor.data().len() / stack.len();
         Ok(stack.codec(i)?.decode(&tensor.data()[i * bytes..][..bytes]))

@@ -10,6 +10,7 @@ use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::checksum;
+use super::ensure;
 use super::material::MaterialEntry;
 use super::stack::{Stack, stacked};
 use super::stored::StoredAxis;
@@ -48,11 +49,10 @@ impl Provenance {
     pub fn check(&self) -> Result<(), LoadError> {
         let mut names = BTreeSet::new();
         for material in &self.materials {
-            let named =
-                if names.insert(&material.name) { Ok(()) } else { Err("named twice".into()) };
-            material.check().and(named).map_err(|why: String| {
-                LoadError::Invalid(format!("material `{}`: {why}", material.name))
-            })?;
+            let name = &material.name;
+            let named = ensure(names.insert(name), || "named twice".into());
+            let sound = material.check().and(named);
+            sound.map_err(|why| invalid(format!("material `{name}`: {why}")))?;
         }
         Ok(())
     }

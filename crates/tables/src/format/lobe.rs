@@ -7,6 +7,7 @@ use microfacet_core::Skew;
 use microfacet_core::shape::{gamma_of_s, s_of_gamma};
 use serde::{Deserialize, Serialize};
 
+use super::ensure;
 use super::subject::joined_name;
 use crate::interval::Interval;
 use crate::{GAMMA_MIN, SIGMA_MAX};
@@ -76,13 +77,11 @@ impl Roughness {
 
     /// Checks that ranges ascend from 0 or more; the error says what is wrong.
     pub(super) fn check(self) -> Result<(), String> {
-        let sound = |Interval { min, max }| 0.0 <= min && min <= max && max < f64::INFINITY;
-        match [self.x(), self.y()].into_iter().find(|sigma| !sound(*sigma)) {
-            Some(Interval { min, max }) => Err(format!(
-                "sigma = [{min}, {max}] must ascend, from 0 or more to a finite number"
-            )),
-            None => Ok(()),
-        }
+        [self.x(), self.y()].into_iter().try_for_each(|Interval { min, max }| {
+            ensure(0.0 <= min && min <= max && max < f64::INFINITY, || {
+                format!("sigma = [{min}, {max}] must ascend, from 0 or more to a finite number")
+            })
+        })
     }
 }
 
@@ -217,12 +216,8 @@ impl<D> LobeSpec<D> {
     /// The same lobe with its distribution in other terms.
     pub fn map<E>(&self, distribution: impl FnOnce(&D) -> E) -> LobeSpec<E> {
         let Self { roughness, gamma, theta, .. } = *self;
-        LobeSpec {
-            roughness,
-            gamma,
-            theta,
-            distribution: self.distribution.as_ref().map(distribution),
-        }
+        let distribution = self.distribution.as_ref().map(distribution);
+        LobeSpec { roughness, gamma, theta, distribution }
     }
 }
 
@@ -253,14 +248,14 @@ impl<D: Clone + PartialEq> LobeSpec<D> {
         if self.distribution.is_some() || other.distribution.is_some() {
             return self.distribution == other.distribution;
         }
-        let sigmas = self.sigmas().into_iter().zip(other.sigmas());
+        let has = |range: Interval, sigma| within(range.into(), sigma, f32::EPSILON.into());
         (self.theta, self.is_family()) == (other.theta, other.is_family())
             && other.s().into_iter().all(|s| self.contains_s(s))
-            && sigmas.into_iter().all(|(all, Interval { min, max })| {
-                [min, max]
-                    .into_iter()
-                    .all(|sigma| within(all.into(), sigma, f64::from(f32::EPSILON)))
-            })
+            && self
+                .sigmas()
+                .into_iter()
+                .zip(other.sigmas())
+                .all(|(range, Interval { min, max })| has(range, min) && has(range, max))
     }
 }
 
@@ -288,20 +283,16 @@ impl LobeSpec {
 
     /// Checks every number but σ; the error says what is wrong.
     pub(super) fn check(&self) -> Result<(), String> {
-        let [min, max] = self.s();
-        if !(0.0 <= min && min <= max && max < 2.0) {
-            let Interval { min, max } = self.gamma;
-            return Err(format!("gamma = [{min}, {max}] must ascend, from more than 3/2"));
-        }
-        if self.distribution.as_ref().is_some_and(String::is_empty) {
-            return Err("a distribution without a label".into());
-        }
+        let ([low, high], Interval { min, max }) = (self.s(), self.gamma);
+        ensure(0.0 <= low && low <= high && high < 2.0, || {
+            format!("gamma = [{min}, {max}] must ascend, from more than 3/2")
+        })?;
+        let is_named = self.distribution.as_ref().is_none_or(|label| !label.is_empty());
+        ensure(is_named, || "a distribution without a label".into())?;
         let Some(theta) = self.theta else { return Ok(()) };
-        if !self.is_single() || self.distribution.is_some() {
-            return Err(
-                "theta is for a Student-t lobe with single numbers of sigma and gamma".into()
-            );
-        }
+        ensure(self.is_single() && self.distribution.is_none(), || {
+            "theta is for a Student-t lobe with single numbers of sigma and gamma".into()
+        })?;
         Skew::new(self.sigma(), theta).map(drop).map_err(|why| format!("theta = {theta:?}: {why}"))
     }
 }
@@ -346,12 +337,8 @@ mod tests {
         // Lobes take sigma in single precision, and s of a gamma is rounded.
         let single = LobeSpec::student_t([f64::from(0.1_f32), f64::from(0.3_f32)], 3.0 + 1e-12);
         assert!(brushed.contains(&single));
-        for other in [
-            LobeSpec::student_t([0.1, 0.3001], 3.0),
-            LobeSpec::student_t([0.1, 0.3], 3.0001),
-            LobeSpec::student_t([0.3, 0.1], 3.0),
-        ] {
-            assert!(!brushed.contains(&other), "{other:?}");
+        for (sigma, gamma) in [([0.1, 0.3001], 3.0), ([0.1, 0.3], 3.0001), ([0.3, 0.1], 3.0)] {
+            assert!(!brushed.contains(&LobeSpec::student_t(sigma, gamma)), "{sigma:?} {gamma}");
         }
         assert!(!turned.contains(&tilted([0.1, 0.3], 3.0, [0.1, 0.2, 0.4])));
         assert!(!gtr.contains(&LobeSpec::outside("gtr:0.2,1.6".into())));

@@ -17,6 +17,8 @@ mod stored;
 mod subject;
 mod table;
 
+use alloc::string::String;
+
 pub use certificate::{Certificate, Coordinate, Errors, Quantity};
 pub use checksum::{crc32, seal, seal_document};
 pub use container::{decode, encode};
@@ -29,3 +31,8 @@ pub use precision::Precision;
 pub use reflectance::Reflectance;
 pub use subject::{Side, Subject, joined_name};
 pub use table::Table;
+
+/// Refuses what is not sound, and says why.
+fn ensure(sound: bool, why: impl FnOnce() -> String) -> Result<(), String> {
+    if sound { Ok(()) } else { Err(why()) }
+}

@@ -7,6 +7,7 @@ use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
+use super::ensure;
 use super::kind::{Channels, Kind};
 use super::subject::Side;
 use crate::axis::ReflectanceRoot;
@@ -138,10 +139,9 @@ impl Reflectance {
     /// Whether a table of this reflectance is of another.
     pub fn contains(&self, other: &Self) -> bool {
         match (self, other) {
-            (
-                Self::Interface { side, index },
-                Self::Interface { side: other, index: Interval { min, max } },
-            ) => side == other && index.contains(*min) && index.contains(*max),
+            (Self::Interface { side, index }, Self::Interface { side: seen, index: within }) => {
+                side == seen && index.contains(within.min) && index.contains(within.max)
+            }
             _ => self == other,
         }
     }
@@ -176,26 +176,25 @@ impl Reflectance {
             },
             Self::Conductor { eta, k } => {
                 let finite = eta.iter().chain(k).all(|x| x.is_finite());
-                if finite && eta.iter().all(|&eta| eta > 0.0) && k.iter().all(|&k| k >= 0.0) {
-                    return Ok(());
-                }
-                Err(format!(
-                    "a conductor of eta = {eta:?} and k = {k:?}; eta must be more than 0 and k at \
-                     least 0"
-                ))
+                let sound = finite && eta.iter().all(|&x| x > 0.0) && k.iter().all(|&x| x >= 0.0);
+                ensure(sound, || {
+                    format!(
+                        "a conductor of eta = {eta:?} and k = {k:?}; eta must be more than 0 and k \
+                         at least 0"
+                    )
+                })
             }
             Self::Dielectric(eta) if eta.is_point() => {
-                if eta.min > 0.0 && eta.min < f64::INFINITY {
-                    return Ok(());
-                }
-                Err(format!("dielectric = {} must be finite and more than 0", eta.min))
+                let eta = eta.min;
+                ensure(eta > 0.0 && eta < f64::INFINITY, || {
+                    format!("dielectric = {eta} must be finite and more than 0")
+                })
             }
             Self::Dielectric(Interval { min, max })
             | Self::Interface { index: Interval { min, max }, .. } => {
-                if 1.0 <= *min && *min < f64::INFINITY && min <= max {
-                    return Ok(());
-                }
-                Err(format!("indices of refraction [{min}, {max}] must ascend, from 1 or more"))
+                ensure(1.0 <= *min && *min < f64::INFINITY && min <= max, || {
+                    format!("indices of refraction [{min}, {max}] must ascend, from 1 or more")
+                })
             }
         }
     }

@@ -12,6 +12,7 @@ use microfacet_core::Masking;
 use serde::{Deserialize, Serialize};
 
 use super::certificate::{Certificate, Figures};
+use super::ensure;
 use super::kind::Kind;
 use super::lobe::{LobeForm, LobeSpec, Roughness};
 use super::precision::{Codec, Precision};
@@ -191,14 +192,10 @@ impl Stack {
 
     /// Checks that every axis is there, and every column as long as there are tables.
     pub(super) fn check(&self, axes: &[StoredAxis]) -> Result<(), String> {
-        if self.channels.is_empty() {
-            return Err("no channels".into());
-        }
-        if self.len() == 0 {
-            return Err("no tables".into());
-        }
-        if let Some(i) = self.axes.iter().find(|&&i| i >= axes.len()) {
-            return Err(format!("axis {i} of {}", axes.len()));
+        ensure(!self.channels.is_empty(), || "no channels".into())?;
+        ensure(self.len() > 0, || "no tables".into())?;
+        for i in &self.axes {
+            ensure(*i < axes.len(), || format!("axis {i} of {}", axes.len()))?;
         }
         let Self { gamma, sigma, theta, distribution, eta, k, scale, offset, .. } = self;
         let columns = [
@@ -213,12 +210,12 @@ impl Stack {
         ];
         let columns = columns.into_iter().filter(|(_, entries)| *entries > 0);
         let figures = self.certificate.iter().map(|(key, column)| (&key[..], column.len()));
-        match columns.chain(figures).find(|(_, entries)| *entries != self.len()) {
-            Some((key, entries)) => {
-                Err(format!("`{key}` has {entries} entries for {} tables", self.len()))
-            }
-            None => Ok(()),
-        }
+        let tables = self.len();
+        columns.chain(figures).try_for_each(|(key, entries)| {
+            ensure(entries == tables, || {
+                format!("`{key}` has {entries} entries for {tables} tables")
+            })
+        })
     }
 
     /// What the i-th table is of; the error says what is missing.
@@ -230,17 +227,15 @@ impl Stack {
             (LobeForm::Distribution, _, Some(label)) => LobeSpec::outside(label.clone()),
             (_, None, _) => return Err(missing("gamma")),
             (form, Some(&gamma), _) => {
-                if form != LobeForm::Family && sigma.is_none() {
-                    return Err(missing("sigma"));
-                }
+                ensure(form == LobeForm::Family || sigma.is_some(), || missing("sigma"))?;
                 let lobe = LobeSpec::family(sigma.unwrap_or(Roughness::ALL), gamma.into());
                 LobeSpec { theta: self.theta.get(i).copied(), ..lobe }
             }
         };
-        if lobe.form() != self.lobe {
-            let (got, stated) = (lobe.form(), self.lobe);
-            return Err(format!("its columns are of the form {got:?}, not of {stated:?}"));
-        }
+        let (got, stated) = (lobe.form(), self.lobe);
+        ensure(got == stated, || {
+            format!("its columns are of the form {got:?}, not of {stated:?}")
+        })?;
         let reflectance = match (self.reflectance, self.eta.get(i).copied()) {
             (None, _) => None,
             (Some(Optics::Moments), _) => Some(Reflectance::Mirror),
@@ -291,9 +286,9 @@ impl Stack {
         let shape = self.shape(axes).unwrap_or_default();
         let shape = &shape[usize::from(self.count.is_some())..];
         let expected = shape.iter().try_fold(1, |product: usize, n| product.checked_mul(*n));
-        if values.is_empty() || expected != Some(values.len()) {
-            return Err(format!("{} values for shape {shape:?}", values.len()));
-        }
+        ensure(!values.is_empty() && expected == Some(values.len()), || {
+            format!("{} values for shape {shape:?}", values.len())
+        })?;
         let subject = self.subject(i)?;
         let single = subject.single();
         let axes = self.axes.iter().map(|&axis| axes[axis].axis(single));

@@ -8,6 +8,7 @@ use alloc::vec::Vec;
 use microfacet_core::Masking;
 use serde::{Deserialize, Serialize};
 
+use super::ensure;
 use super::kind::Kind;
 use super::lobe::{LobeForm, LobeSpec, Roughness};
 use super::reflectance::Reflectance;
@@ -90,32 +91,29 @@ impl Subject {
     /// Checks the subject, and that it fits a kind of table; the error says what is wrong.
     pub(super) fn check(&self, kind: Kind) -> Result<(), String> {
         let Self { lobe, masking, reflectance } = self;
-        if [masking.is_some(), reflectance.is_some()] != [kind.is_albedo(); 2] {
-            return Err(
-                "an albedo names the masking and the reflectance it is for, and no other table does"
-                    .into(),
-            );
-        }
+        ensure([masking.is_some(), reflectance.is_some()] == [kind.is_albedo(); 2], || {
+            "an albedo names the masking and the reflectance it is for, and no other table does"
+                .into()
+        })?;
         let form = lobe.form();
         let fits = match kind {
             Kind::Albedo => true,
             _ if kind.is_radial() => form == LobeForm::Distribution,
             _ => form == LobeForm::Family,
         };
-        if !fits {
-            return Err(format!("{} tables are not of a lobe of the form {form:?}", kind.name()));
-        }
+        let name = kind.name();
+        ensure(fits, || format!("{name} tables are not of a lobe of the form {form:?}"))?;
         if kind.is_albedo() && form != LobeForm::Distribution {
             lobe.roughness.check()?;
-        } else if lobe.roughness != Roughness::ALL {
-            return Err(format!("{} tables are of every sigma", kind.name()));
+        } else {
+            let is_all = lobe.roughness == Roughness::ALL;
+            ensure(is_all, || format!("{name} tables are of every sigma"))?;
         }
         lobe.check()?;
-        if form == LobeForm::StudentT
-            && !(lobe.is_single() && lobe.sigmas().iter().all(|x| x.min > 0.0))
-        {
-            return Err("the sigma and gamma of its lobe must be single numbers more than 0".into());
-        }
+        let is_one = lobe.is_single() && lobe.sigmas().iter().all(|x| x.min > 0.0);
+        ensure(form != LobeForm::StudentT || is_one, || {
+            "the sigma and gamma of its lobe must be single numbers more than 0".into()
+        })?;
         reflectance.iter().try_for_each(Reflectance::check_of_table)
     }
 }

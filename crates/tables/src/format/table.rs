@@ -99,13 +99,9 @@ impl Table {
     /// # Errors
     /// [`LoadError`] naming the table and what is wrong.
     pub fn validate(&self) -> Result<(), LoadError> {
-        let fail = |why: String| Err(LoadError::Invalid(format!("table `{}`: {why}", self.name)));
-        if let Err(why) = self.subject.check(self.kind) {
-            return fail(why);
-        }
-        if let Err(why) = self.certificate.check() {
-            return fail(why);
-        }
+        let invalid = |why: String| LoadError::Invalid(format!("table `{}`: {why}", self.name));
+        let fail = |why: String| Err(invalid(why));
+        self.subject.check(self.kind).and_then(|()| self.certificate.check()).map_err(invalid)?;
         let layout = self.kind.layout(&self.subject);
         let names: Vec<&str> = self.axes.iter().map(|axis| axis.name.as_str()).collect();
         let expected: Vec<&str> = layout.axes.iter().map(|axis| axis.name).collect();
@@ -113,22 +109,18 @@ impl Table {
             return fail(format!("axes {names:?} where {expected:?} are expected"));
         }
         if self.channels != layout.channels {
-            return fail(format!(
-                "channels {:?} where {:?} are expected",
-                self.channels, layout.channels
-            ));
+            let (got, want) = (&self.channels, layout.channels);
+            return fail(format!("channels {got:?} where {want:?} are expected"));
         }
         for (axis, rule) in self.axes.iter().zip(&layout.axes) {
-            if !rule.mappings.contains(&axis.mapping.name()) {
-                let (got, want) = (axis.mapping.name(), rule.mappings.join("` or `"));
-                return fail(format!("axis `{}` is mapped by `{got}`, not by `{want}`", axis.name));
+            let (name, mapping, read) = (&axis.name, axis.mapping.name(), axis.interpolation);
+            if !rule.mappings.contains(&mapping) {
+                let want = rule.mappings.join("` or `");
+                return fail(format!("axis `{name}` is mapped by `{mapping}`, not by `{want}`"));
             }
-            if !rule.interpolations.contains(&axis.interpolation) {
-                let (got, want) = (axis.interpolation, rule.interpolations);
-                return fail(format!(
-                    "axis `{}` is read by {got:?}, not by one of {want:?}",
-                    axis.name
-                ));
+            let want = rule.interpolations;
+            if !want.contains(&read) {
+                return fail(format!("axis `{name}` is read by {read:?}, not by one of {want:?}"));
             }
             axis.validate()?;
         }
