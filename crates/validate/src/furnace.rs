@@ -13,6 +13,8 @@ use microfacet_sampler::albedo::Albedo;
 use microfacet_sampler::{Masking, MaterialError, Tables};
 use microfacet_tables::{Axis, Kind, LobeSpec, Quantity, Reflectance, Subject, Table};
 
+use crate::run::on_threads;
+
 /// Allowed deviation from 1 with the Kulla–Conty lobe
 /// ([2017](https://blog.selfshadow.com/publications/s2017-shading-course/)).
 pub const TOLERANCE: f64 = 2e-3;
@@ -165,8 +167,8 @@ pub fn survey_seconds(tables: &Tables) -> f64 {
 
 /// The estimated seconds of so many furnaces on the current threads.
 pub fn seconds(rows: usize) -> f64 {
-    // Microseconds for a row: 2200 of `microfacet-bake furnace --threads 1`, 3400 of the survey.
-    1e-6 * 3000.0 * rows as f64 / rayon::current_num_threads() as f64
+    // For a row: 2200 of `microfacet-bake furnace --threads 1`, 3400 of the survey.
+    on_threads(rows, 3000.0)
 }
 
 /// Runs the furnace for a grid of materials between the nodes of each albedo table, with views from
@@ -231,10 +233,9 @@ fn between(axis: &Axis, range: [f64; 2], count: usize) -> Vec<f64> {
 
 /// The estimated seconds of [`walk`] on the current threads.
 pub fn walk_seconds(sigma: f64, gamma: f64, walks: usize) -> f64 {
-    // Microseconds for a ray, of which long tails take many bounces: fitted to `microfacet-bake
-    // furnace --threads 1 --walks 1e5`, within a factor of two for sigma of 0.3 to 3.
-    let ray = 1.0 + 0.2 * sigma / (gamma - 1.5);
-    1e-6 * ray * walks as f64 / rayon::current_num_threads() as f64
+    // For a ray, of which long tails take many bounces: fitted to `microfacet-bake furnace
+    // --threads 1 --walks 1e5`, within a factor of two for sigma of 0.3 to 3.
+    on_threads(walks, 1.0 + 0.2 * sigma / (gamma - 1.5))
 }
 
 /// Follows `walks` rays on the microsurface, in parallel and counted in a stage of the progress;

@@ -18,4 +18,4 @@ pub mod record;
 mod run;
 pub mod stress;
 
-pub use run::{LEVEL, Options, Outcome, PDF_TOLERANCE, Report, USUAL, run, seconds};
+pub use run::{Judged, LEVEL, Options, Outcome, PDF_TOLERANCE, Report, USUAL, run, seconds};

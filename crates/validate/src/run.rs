@@ -6,9 +6,8 @@ use rayon::prelude::*;
 use microfacet_baker::progress::Stage;
 use microfacet_model as model;
 use microfacet_model::MicrofacetDistribution as _;
-use microfacet_sampler::{MaterialError, MicrofacetDistribution as _, Tables};
-
 use microfacet_model::statistics::{NormalsTest, sidak, test_visible_normals};
+use microfacet_sampler::{MaterialError, MicrofacetDistribution as _, Tables};
 
 use super::configuration::Configuration;
 use super::pdf_integral;
@@ -45,65 +44,104 @@ pub struct Report {
     pub pdf_integral: f64,
 }
 
+impl Judged for Report {
+    fn p(&self) -> f64 {
+        self.normals.p()
+    }
+
+    fn sound(&self) -> bool {
+        // Written so that a NaN fails.
+        (self.pdf_integral - 1.0).abs() <= PDF_TOLERANCE
+    }
+}
+
+/// The result for one configuration, as a run judges it.
+pub trait Judged {
+    /// The smallest p-value of its tests.
+    fn p(&self) -> f64;
+
+    /// Whether what is no statistical test of it is right.
+    fn sound(&self) -> bool {
+        true
+    }
+}
+
 /// The result of a run.
 #[derive(Clone, Debug)]
-pub struct Outcome {
+pub struct Outcome<R = Report> {
     /// One report a configuration, the smallest p first.
-    pub reports: Vec<Report>,
+    pub reports: Vec<R>,
     /// Level of a single test after Šidák's correction.
     pub level: f64,
 }
 
-impl Outcome {
-    /// Configurations whose χ² rejects.
+impl<R: Judged> Outcome<R> {
+    /// Configurations of which a χ² rejects.
     pub fn rejected(&self) -> usize {
-        self.reports.iter().filter(|report| report.normals.p() < self.level).count()
+        // Written so that a NaN is rejected.
+        self.reports.iter().filter(|report| !(report.p() >= self.level)).count()
     }
 
+    /// Whether all tests pass.
+    pub fn passed(&self) -> bool {
+        self.rejected() == 0 && self.reports.iter().all(Judged::sound)
+    }
+}
+
+impl Outcome {
     /// The report whose integral of `table_pdf` is furthest from one.
     pub fn worst_integral(&self) -> Option<&Report> {
         let off = |report: &Report| (report.pdf_integral - 1.0).abs();
         self.reports.iter().max_by(|a, b| off(a).total_cmp(&off(b)))
     }
-
-    /// Whether all tests pass.
-    pub fn passed(&self) -> bool {
-        // Written so that a NaN fails.
-        let sound = |report: &Report| (report.pdf_integral - 1.0).abs() <= PDF_TOLERANCE;
-        self.rejected() == 0 && self.reports.iter().all(sound)
-    }
 }
 
 /// Samples between two counts of the progress.
-pub(super) const COUNTED: usize = 4096;
+const COUNTED: usize = 4096;
 
-/// Tests all configurations in parallel; each counts its samples in a stage of the progress
-/// itself.
-pub(super) fn each<C: Sync, R: Send, E: Send>(
+/// Judges all configurations in parallel, each by a number of χ² tests, and counts their samples in
+/// a stage of the progress; `one` calls what it is given for each sample.
+pub(crate) fn judge<C: Sync, R: Judged + Send, E: Send>(
     configurations: &[C],
+    tests: usize,
     samples: usize,
     stage: &Stage,
-    one: impl Fn(&C) -> Result<R, E> + Sync,
-) -> Result<Vec<R>, E> {
+    one: impl Fn(&C, &mut dyn FnMut()) -> Result<R, E> + Sync,
+) -> Result<Outcome<R>, E> {
     // One more for what does not depend on the number of samples.
     stage.split(configurations.len() * (1 + samples / COUNTED));
     let counted = |configuration| {
-        let report = one(configuration);
+        let mut drawn = 0;
+        let mut count = || {
+            drawn += 1;
+            if drawn % COUNTED == 0 {
+                stage.step();
+            }
+        };
+        let report = one(configuration, &mut count);
         stage.step();
         report
     };
-    configurations.par_iter().map(counted).collect()
+    let mut reports: Vec<R> = configurations.par_iter().map(counted).collect::<Result<_, E>>()?;
+    reports.sort_by(|a, b| a.p().total_cmp(&b.p()));
+    Ok(Outcome { level: sidak(LEVEL, tests * reports.len().max(USUAL)), reports })
+}
+
+/// The estimated seconds on the current threads of `count` parts of work that take so many
+/// microseconds each.
+pub(crate) fn on_threads(count: usize, microseconds: f64) -> f64 {
+    1e-6 * microseconds * count as f64 / rayon::current_num_threads() as f64
 }
 
 /// The estimated seconds of a run on the current threads.
 pub fn seconds(configurations: usize, options: Options) -> f64 {
-    // Microseconds for the grids and the integral of a configuration, and for a normal: fitted to
+    // For the grids and the integral of a configuration, and for a normal: fitted to
     // `microfacet-bake validate --threads 1` with 1e3 and 1e6 samples.
-    let one = 37_000.0 + 0.17 * options.samples as f64;
-    1e-6 * one * configurations as f64 / rayon::current_num_threads() as f64
+    on_threads(configurations, 37_000.0 + 0.17 * options.samples as f64)
 }
 
-/// Tests all `configurations` in parallel, and counts their normals in a stage of the progress.
+/// Tests all `configurations` in parallel, each by two χ², and counts their normals in a stage of
+/// the progress.
 ///
 /// # Errors
 /// [`MaterialError`] if the set does not hold what it declares to cover.
@@ -113,19 +151,16 @@ pub fn run(
     options: Options,
     stage: &Stage,
 ) -> Result<Outcome, MaterialError> {
-    let mut reports = each(configurations, options.samples, stage, |configuration| {
-        one(tables, configuration, options, stage)
-    })?;
-    reports.sort_by(|a, b| a.normals.p().total_cmp(&b.normals.p()));
-    // Two tests a configuration.
-    Ok(Outcome { level: sidak(LEVEL, 2 * reports.len().max(USUAL)), reports })
+    judge(configurations, 2, options.samples, stage, |configuration, count| {
+        one(tables, configuration, options, count)
+    })
 }
 
 fn one(
     tables: &Tables,
     configuration: &Configuration,
     options: Options,
-    stage: &Stage,
+    count: &mut dyn FnMut(),
 ) -> Result<Report, MaterialError> {
     let Configuration { sigma_x, sigma_y, gamma, seed, .. } = *configuration;
     let lobe = tables.lobe([sigma_x, sigma_y], gamma)?;
@@ -134,12 +169,8 @@ fn one(
     let judged = gamma * options.gamma_factor;
     let truth = model::StudentT::new(sigma, judged).map_err(|_| MaterialError::Gamma(judged))?;
     let v = configuration.view();
-    let mut drawn = 0;
     let normals = test_visible_normals(&truth, v.as_dvec3(), options.samples, seed, |u| {
-        drawn += 1;
-        if drawn % COUNTED == 0 {
-            stage.step();
-        }
+        count();
         lobe.sample_visible_normal(v, u)
     });
     let theta = configuration.theta as f32;

@@ -21,6 +21,7 @@ use microfacet_baker::table_spec::GAMMA_WHOLE;
 use microfacet_sampler::{MaterialError, Tables};
 
 use super::configuration::shapes;
+use super::run::on_threads;
 
 use corners::{corner_materials, corner_points, random_material, random_points};
 
@@ -155,9 +156,8 @@ impl Report {
 
 /// The estimated seconds of a run of at least so many points on the current threads.
 pub fn seconds(tables: &Tables, points: u64) -> f64 {
-    // Microseconds of `microfacet-bake validate --stress --threads 1` for a point.
-    let all = points.max(corner_count(&corner_materials(tables)));
-    1e-6 * 3.0 * all as f64 / rayon::current_num_threads() as f64
+    // Of `microfacet-bake validate --stress --threads 1` for a point.
+    on_threads(points.max(corner_count(&corner_materials(tables))) as usize, 3.0)
 }
 
 /// The number of corner points, about: it varies a little between materials.

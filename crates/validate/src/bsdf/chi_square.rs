@@ -5,13 +5,13 @@ use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
 use microfacet_baker::progress::Stage;
-use microfacet_model::statistics::{ChiSquare, chi_square, sidak};
+use microfacet_model::statistics::{ChiSquare, chi_square};
 use microfacet_sampler::{Bsdf, Tables, Transport};
 
 use super::configuration::Configuration;
 use super::grid::Grid;
 use super::specimen::Unmade;
-use crate::run::{COUNTED, LEVEL, Options, USUAL, each};
+use crate::run::{Judged, Options, Outcome, judge, on_threads};
 
 /// Cells, about, and lights that they are made from: more where more samples resolve more.
 const CELLS: usize = 256;
@@ -68,34 +68,17 @@ pub struct Report {
     pub test: ChiSquare,
 }
 
-/// The result of a run.
-#[derive(Clone, Debug)]
-pub struct Outcome {
-    /// One report a configuration, the smallest p first.
-    pub reports: Vec<Report>,
-    /// Level of a single test after Šidák's correction.
-    pub level: f64,
-}
-
-impl Outcome {
-    /// Configurations that are rejected.
-    pub fn rejected(&self) -> usize {
-        // Written so that a NaN is rejected.
-        self.reports.iter().filter(|report| !(report.test.p >= self.level)).count()
-    }
-
-    /// Whether all tests pass.
-    pub fn passed(&self) -> bool {
-        self.rejected() == 0
+impl Judged for Report {
+    fn p(&self) -> f64 {
+        self.test.p
     }
 }
 
 /// The estimated seconds of a run on the current threads.
 pub fn seconds(configurations: usize, options: Options) -> f64 {
-    // Microseconds for the cells of a configuration and the integral of each, and for a light:
-    // fitted to `microfacet-bake bsdf --only chi-square --threads 1` with 1e4 and 5e5 samples.
-    let one = 240_000.0 + 0.7 * options.samples as f64;
-    1e-6 * one * configurations as f64 / rayon::current_num_threads() as f64
+    // For the cells of a configuration and the integral of each, and for a light: fitted to
+    // `microfacet-bake bsdf --only chi-square --threads 1` with 1e4 and 5e5 samples.
+    on_threads(configurations, 240_000.0 + 0.7 * options.samples as f64)
 }
 
 /// Tests all `configurations` in parallel, with the albedos of `tables`, and counts their lights in
@@ -108,19 +91,17 @@ pub fn run(
     configurations: &[Configuration],
     options: Options,
     stage: &Stage,
-) -> Result<Outcome, Unmade> {
-    let mut reports = each(configurations, options.samples, stage, |configuration| {
-        one(tables, configuration, options, stage)
-    })?;
-    reports.sort_by(|a, b| a.test.p.total_cmp(&b.test.p));
-    Ok(Outcome { level: sidak(LEVEL, reports.len().max(USUAL)), reports })
+) -> Result<Outcome<Report>, Unmade> {
+    judge(configurations, 1, options.samples, stage, |configuration, count| {
+        one(tables, configuration, options, count)
+    })
 }
 
 fn one(
     tables: &Tables,
     configuration: &Configuration,
     options: Options,
-    stage: &Stage,
+    count: &mut dyn FnMut(),
 ) -> Result<Report, Unmade> {
     let judged = configuration.specimen.bsdf(tables)?;
     let factor = options.gamma_factor;
@@ -129,12 +110,8 @@ fn one(
         false => configuration.specimen.reshaped(factor).bsdf(tables)?,
     };
     let v = configuration.view();
-    let mut count = 0;
     let draw = |choice, u| {
-        count += 1;
-        if count % COUNTED == 0 {
-            stage.step();
-        }
+        count();
         let sample = drawn.sample(v, choice, u, Transport::Radiance)?;
         (!sample.delta).then_some(sample.l)
     };

@@ -22,6 +22,7 @@ use microfacet_tables::{Interval, Kind, LobeSpec, Quantity, Reflectance, Table};
 
 use super::specimen::{self, LobeOf, Specimen, Surface, Unmade};
 use crate::furnace::{Estimate, TOLERANCE, direction, over_lights};
+use crate::run::on_threads;
 
 /// Roughnesses and cosines of views; smaller ones are outside what certificates promise.
 const SIGMAS: [f32; 6] = [0.0, 0.01, 0.1, 0.3, 1.0, 3.0];
@@ -149,10 +150,9 @@ pub fn rows(pairs: &[[f64; 2]], masking: Masking) -> Vec<(Specimen, f32)> {
 
 /// The estimated seconds of so many rows on the current threads.
 pub fn seconds(rows: usize, samples: usize) -> f64 {
-    // Microseconds of a row's quadrature, and of a sample, of which every fifth row has some: 12 s
-    // for the 1,008 rows of `microfacet-bake bsdf --only furnace --threads 1`.
-    let one = 7_000.0 + 0.05 * samples as f64;
-    1e-6 * one * rows as f64 / rayon::current_num_threads() as f64
+    // Of a row's quadrature, and of a sample, of which every fifth row has some: 12 s for the 1,008
+    // rows of `microfacet-bake bsdf --only furnace --threads 1`.
+    on_threads(rows, 7_000.0 + 0.05 * samples as f64)
 }
 
 /// Runs the furnace for each row with the albedos of `tables`; every fifth row is also sampled.

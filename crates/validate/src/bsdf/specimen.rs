@@ -61,16 +61,9 @@ pub struct Specimen {
 }
 
 /// Why a specimen or its tables cannot be made.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
 pub struct Unmade(String);
-
-impl fmt::Display for Unmade {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for Unmade {}
 
 impl Unmade {
     pub(super) fn new(specimen: &Specimen, why: &dyn fmt::Display) -> Self {

@@ -58,11 +58,10 @@ impl Checker<'_> {
         }
         for l in lights {
             let ([f], pdf) = bsdf.eval_pdf(v, l, transport);
-            let sound = |x: f32| x >= 0.0 && x.is_finite();
-            self.require(sound(f), "bsdf f negative, NaN or inf", f.into(), at);
-            self.require(sound(pdf), "bsdf pdf negative, NaN or inf", pdf.into(), at);
+            self.density(f, "bsdf f negative, NaN or inf", at);
+            self.density(pdf, "bsdf pdf negative, NaN or inf", at);
             let nothing = bsdf.is_delta() && f + pdf > 0.0;
-            self.require(!nothing, "delta bsdf with f or pdf above 0", f.into(), at);
+            self.require(!nothing, "delta bsdf with f or pdf above 0", f, at);
         }
         let none = bsdf.sample(Vec3::NAN, choice, at.u, transport).is_none();
         self.require(none, "bsdf samples a view of NaN", 0.0, at);
@@ -77,19 +76,16 @@ impl Checker<'_> {
         is_delta: bool,
     ) {
         let &BsdfSample { l, weight: [weight], pdf, event, delta, .. } = sample;
-        let length = l.as_dvec3().length();
-        let unit = (length - 1.0).abs() <= ROUNDING;
-        self.require(unit, "bsdf light not of unit length", length - 1.0, at);
+        self.unit(l.as_dvec3(), ROUNDING, "bsdf light not of unit length", at);
         let side = ((v.z > 0.0) == (l.z > 0.0) && l.z != 0.0) == (event == Event::Reflection);
-        self.require(side, "bsdf light not on the side of its event", l.z.into(), at);
+        self.require(side, "bsdf light not on the side of its event", l.z, at);
         let weight = f64::from(weight);
         let most = most[usize::from(event == Event::Transmission)];
         let bound = most + ROUNDING * most;
         self.require(weight >= 0.0 && weight <= bound, "bsdf weight out of range", weight, at);
-        let sound = pdf >= 0.0 && pdf.is_finite();
-        self.require(sound, "bsdf sample's pdf negative, NaN or inf", pdf.into(), at);
-        self.require(!delta || pdf == 0.0, "bsdf delta with a pdf", pdf.into(), at);
-        self.require(!is_delta || delta, "delta bsdf without a delta", pdf.into(), at);
+        self.density(pdf, "bsdf sample's pdf negative, NaN or inf", at);
+        self.require(!delta || pdf == 0.0, "bsdf delta with a pdf", pdf, at);
+        self.require(!is_delta || delta, "delta bsdf without a delta", pdf, at);
     }
 
     /// Tests that a conductor or plastic is black from below.
@@ -99,6 +95,6 @@ impl Checker<'_> {
         }
         let none = bsdf.sample(v, at.u[1], at.u, Transport::Radiance).is_none();
         let zero = bsdf.eval_pdf(v, Vec3::Z, Transport::Radiance) == ([0.0], 0.0);
-        self.require(none && zero, "bsdf not black from below", v.z.into(), at);
+        self.require(none && zero, "bsdf not black from below", v.z, at);
     }
 }

@@ -20,6 +20,7 @@ const MODEL_EVERY: usize = 8;
 const COMPLETE_EVERY: usize = 4;
 /// One view in this many also tests batches, bounded normals, ellipsoids and albedo.
 const DERIVED_EVERY: usize = 4;
+
 /// The tilt towards the viewer in unit space.
 struct Tilt {
     /// Unit slope.
@@ -123,64 +124,73 @@ impl<'a> Checker<'a> {
 
 impl Checker<'_> {
     /// Records a broken rule; `value` is the offending number.
-    pub(super) fn require(&mut self, holds: bool, rule: &'static str, value: f64, at: &Point) {
+    pub(super) fn require(
+        &mut self,
+        holds: bool,
+        rule: &'static str,
+        value: impl Into<f64>,
+        at: &Point,
+    ) {
         if !holds {
             let violation = self.report.region(at).violations.entry(rule).or_default();
             violation.count += 1;
-            violation.worst.see(value.abs(), at);
+            violation.worst.see(value.into().abs(), at);
         }
+    }
+
+    /// Requires a number in [0, 1].
+    pub(super) fn share(&mut self, x: impl Into<f64>, rule: &'static str, at: &Point) {
+        let x = x.into();
+        self.require((0.0..=1.0).contains(&x), rule, x, at);
+    }
+
+    /// Requires a finite number that is not negative.
+    pub(super) fn density(&mut self, x: impl Into<f64>, rule: &'static str, at: &Point) {
+        let x = x.into();
+        self.require((0.0..=f64::MAX).contains(&x), rule, x, at);
+    }
+
+    /// Requires a vector of length 1, within `slack`.
+    pub(super) fn unit(&mut self, w: DVec3, slack: f64, rule: &'static str, at: &Point) {
+        let off = w.length() - 1.0;
+        self.require(off.abs() <= slack, rule, off, at);
     }
 
     /// Tests functions of directions alone.
     fn view(&mut self, at: &Point) {
         let v = at.view();
         let g1 = f64::from(self.lobe.g1(v));
-        let unit = |x: f64| (0.0..=1.0).contains(&x);
-        self.require(unit(g1), "g1 outside [0, 1]", g1, at);
+        self.share(g1, "g1 outside [0, 1]", at);
         self.require((g1 > 0.0) == (v.z > 0.0), "g1 = 0 above the horizon, or not below", g1, at);
         let lambda = self.lobe.lambda(v);
-        self.require(lambda >= 0.0, "lambda negative or NaN", lambda.into(), at);
+        self.require(lambda >= 0.0, "lambda negative or NaN", lambda, at);
         if let Lobe::StudentT(lobe) = &self.lobe {
-            let share = lobe.tabulated_share(v);
-            self.require(unit(share.into()), "tabulated_share outside [0, 1]", share.into(), at);
+            self.share(lobe.tabulated_share(v), "tabulated_share outside [0, 1]", at);
         }
 
         let precise = v.as_dvec3();
         let truth = self.exact.g1(precise);
-        self.require(unit(truth), "model g1 outside [0, 1]", truth, at);
+        self.share(truth, "model g1 outside [0, 1]", at);
         let lambda = self.exact.lambda(precise);
         self.require(lambda >= 0.0, "model lambda negative or NaN", lambda, at);
-        let area = self.exact.inverse_area(if v.z < 0.0 {
-            DVec3::new(precise.x, precise.y, 0.0)
-        } else {
-            precise
-        });
-        self.require(
-            area >= 0.0 && area.is_finite(),
-            "model inverse_area negative, NaN or inf",
-            area,
-            at,
-        );
+        let raised = precise.with_z(if v.z < 0.0 { 0.0 } else { precise.z });
+        let area = self.exact.inverse_area(raised);
+        self.density(area, "model inverse_area negative, NaN or inf", at);
         self.report.region(at).errors[0].see((g1 - truth).abs(), at);
 
         // A little further from the normal, one per cent further, and half as far again.
         for factor in [1.0 + 1e-6, 1.01, 1.5] {
-            let further =
-                self.lobe.g1(direction((at.theta * factor).min(std::f64::consts::PI), at.phi));
-            self.require(
-                f64::from(further) <= g1 + ULP4,
-                "g1 rises with theta",
-                f64::from(further) - g1,
-                at,
-            );
+            let theta = (at.theta * factor).min(std::f64::consts::PI);
+            let further = f64::from(self.lobe.g1(direction(theta, at.phi)));
+            self.require(further <= g1 + ULP4, "g1 rises with theta", further - g1, at);
         }
         // Any other direction will do for the light.
         let l = direction(1.5 * f64::from(at.u[1]), at.phi + 2.0);
         for masking in Masking::ALL {
             let (g2, swapped) = (self.lobe.g2(v, l, masking), self.lobe.g2(l, v, masking));
             let limited = f64::from(g2) <= g1.min(self.lobe.g1(l).into()) * (1.0 + ULP4);
-            self.require(g2 >= 0.0 && limited, "g2 outside [0, min g1]", g2.into(), at);
-            self.require(g2 == swapped, "g2 not symmetric", (g2 - swapped).into(), at);
+            self.require(g2 >= 0.0 && limited, "g2 outside [0, min g1]", g2, at);
+            self.require(g2 == swapped, "g2 not symmetric", g2 - swapped, at);
         }
     }
 
@@ -197,32 +207,23 @@ impl Checker<'_> {
 
         let Tilt { half_tangent, rounding, .. } = self.tilt(v, m);
         if self.rises {
-            self.require(
-                !(half_tangent < *last - rounding),
-                "tilt falls with u1",
-                *last - half_tangent,
-                at,
-            );
+            let fall = *last - half_tangent;
+            self.require(!(half_tangent < *last - rounding), "tilt falls with u1", fall, at);
         }
         *last = half_tangent;
 
         let lobe = &self.lobe;
         let (d, pdf, table) = (lobe.d(m), lobe.visible_normal_pdf(v, m), lobe.table_pdf(v, m));
-        let sound = |x: f32| x >= 0.0 && x.is_finite();
-        self.require(sound(d), "d negative, NaN or inf", d.into(), at);
-        self.require(sound(pdf), "visible_normal_pdf negative, NaN or inf", pdf.into(), at);
-        self.require(sound(table), "table_pdf negative, NaN or inf", table.into(), at);
+        self.density(d, "d negative, NaN or inf", at);
+        self.density(pdf, "visible_normal_pdf negative, NaN or inf", at);
+        self.density(table, "table_pdf negative, NaN or inf", at);
         let divides = table > 0.0 || pdf == 0.0 || v.z <= 0.0;
-        self.require(divides, "table_pdf 0 at a drawn normal", pdf.into(), at);
+        self.require(divides, "table_pdf 0 at a drawn normal", pdf, at);
         let truth =
             [self.exact.d(m.as_dvec3()), self.exact.visible_normal_pdf(v.as_dvec3(), m.as_dvec3())];
+        self.density(truth[0], "model d negative, NaN or inf", at);
+        self.density(truth[1], "model pdf negative, NaN or inf", at);
         for (i, (got, want)) in [d, pdf].into_iter().zip(truth).enumerate() {
-            self.require(
-                (0.0..=f64::MAX).contains(&want),
-                ["model d negative, NaN or inf", "model pdf negative, NaN or inf"][i],
-                want,
-                at,
-            );
             // Elsewhere f32 cannot hold it; and v·m at the silhouette is nothing but rounding.
             if (1e-30..1e30).contains(&want) && (i == 0 || facing > 1e-3) {
                 self.report.region(at).errors[1 + i].see((f64::from(got) / want - 1.0).abs(), at);
@@ -231,14 +232,8 @@ impl Checker<'_> {
     }
 
     pub(super) fn unit_and_above(&mut self, m: Vec3, at: &Point) {
-        let length = m.as_dvec3().length();
-        self.require(
-            (length - 1.0).abs() <= ULP4,
-            "sampled normal not of unit length",
-            length - 1.0,
-            at,
-        );
-        self.require(m.z > 0.0, "sampled normal not above the horizon", m.z.into(), at);
+        self.unit(m.as_dvec3(), ULP4, "sampled normal not of unit length", at);
+        self.require(m.z > 0.0, "sampled normal not above the horizon", m.z, at);
     }
 
     /// The tilt that was drawn, recovered from m.
@@ -265,23 +260,13 @@ impl Checker<'_> {
         let v = at.view();
         let m = self.exact.sample_visible_normal(v.as_dvec3(), at.u.map(f64::from));
         let ulp4 = 4.0 * f64::EPSILON;
-        self.require(
-            (m.length() - 1.0).abs() <= ulp4,
-            "model normal not of unit length",
-            m.length() - 1.0,
-            at,
-        );
+        self.unit(m, ulp4, "model normal not of unit length", at);
         self.require(m.z > 0.0, "model normal not above the horizon", m.z, at);
         let facing = v.as_dvec3().dot(m);
-        self.require(
-            v.z < 0.0 || facing >= -2.0 * ULP4 * ULP4 - ulp4,
-            "model normal faces away",
-            facing,
-            at,
-        );
+        let seen = v.z < 0.0 || facing >= -2.0 * ULP4 * ULP4 - ulp4;
+        self.require(seen, "model normal faces away", facing, at);
         let pdf = self.exact.visible_normal_pdf(v.as_dvec3(), m);
-        let sound = (0.0..=f64::MAX).contains(&pdf);
-        self.require(sound, "model pdf negative, NaN or inf", pdf, at);
+        self.density(pdf, "model pdf negative, NaN or inf", at);
         self.cdf_error(at);
     }
 
@@ -293,8 +278,7 @@ impl Checker<'_> {
             return;
         }
         let shape = self.exact.shape();
-        let (view, _) =
-            self.exact.unit_view(DVec3::new(v.x.into(), v.y.into(), v.z.max(0.0).into()));
+        let (view, _) = self.exact.unit_view(v.with_z(v.z.max(0.0)).as_dvec3());
         let x = SignedSlope { w: shape.asinh_slope(tilt.slope.abs()), sign: tilt.slope.signum() };
         let cdf = VisibleSlope::new(shape, view).cdf(x);
         self.report.region(at).errors[3].see((cdf - f64::from(at.u[0])).abs(), at);

@@ -11,7 +11,7 @@ use microfacet_core::shape::gamma_of_s;
 use microfacet_sampler::Tables;
 
 use super::Point;
-use crate::configuration::{draw_shape, shapes};
+use crate::configuration::{draw_shape, log_uniform, shapes};
 
 /// Roughnesses, among them both ends of the allowed range.
 const SIGMAS: [[f32; 2]; 16] = [
@@ -117,10 +117,6 @@ pub(super) fn numbers(seed: u64, i: u64) -> StdRng {
     key[..8].copy_from_slice(&seed.to_le_bytes());
     key[8..16].copy_from_slice(&i.to_le_bytes());
     StdRng::from_seed(key)
-}
-
-fn log_uniform(random: &mut StdRng, low: f64, high: f64) -> f64 {
-    random.random_range(low.ln()..high.ln()).exp()
 }
 
 /// A material that the tables cover: s evenly over `shapes`, or γ close to 3/2, to 2 or to ∞ where

@@ -22,46 +22,26 @@ impl Checker<'_> {
         let mut g1 = [0.0; 5];
         let g1_done = self.lobe.g1_batch(&[v; 5], &mut g1).is_ok();
         let apart = g1.iter().map(|g1| (g1 - self.lobe.g1(v)).abs()).fold(0.0, f32::max);
-        self.require(
-            g1_done && f64::from(apart) <= 0.5 * ULP4,
-            "g1_batch differs",
-            apart.into(),
-            &points[0],
-        );
+        let same = |apart: f32| f64::from(apart) <= 0.5 * ULP4;
+        self.require(g1_done && same(apart), "g1_batch differs", apart, &points[0]);
 
         for (at, m) in points.iter().zip(normals) {
             let apart = (m - self.lobe.sample_visible_normal(v, at.u)).abs().max_element();
-            self.require(
-                done && f64::from(apart) <= 0.5 * ULP4,
-                "sample_batch differs",
-                apart.into(),
-                at,
-            );
+            self.require(done && same(apart), "sample_batch differs", apart, at);
         }
     }
 
     /// Tests normals bounded for reflection at one view.
     pub(super) fn bounded(&mut self, bounded: &Bounded, points: &[Point]) {
-        let v = points[0].view();
-        let numbers: Vec<_> = points.iter().map(|at| at.u).collect();
-        let bounded = bounded.at(v);
-        let share = f64::from(bounded.share());
-        let drawn: Vec<_> = numbers
-            .iter()
-            .map(|&u| bounded.sample(u))
-            .map(|m| (m, [bounded.visible_normal_pdf(m), bounded.table_pdf(m)]))
-            .collect();
-        self.require(
-            share > 0.0 && share <= 1.0,
-            "bounded share outside (0, 1]",
-            share,
-            &points[0],
-        );
-        for (at, (m, densities)) in points.iter().zip(drawn) {
+        let bounded = bounded.at(points[0].view());
+        let share = bounded.share();
+        let sound = share > 0.0 && share <= 1.0;
+        self.require(sound, "bounded share outside (0, 1]", share, &points[0]);
+        for at in points {
+            let m = bounded.sample(at.u);
             self.unit_and_above(m, at);
-            for pdf in densities {
-                let sound = pdf >= 0.0 && pdf.is_finite();
-                self.require(sound, "bounded pdf negative, NaN or inf", pdf.into(), at);
+            for pdf in [bounded.visible_normal_pdf(m), bounded.table_pdf(m)] {
+                self.density(pdf, "bounded pdf negative, NaN or inf", at);
             }
         }
     }
@@ -70,28 +50,19 @@ impl Checker<'_> {
     /// matrix would be singular in single precision.
     pub(super) fn ellipsoids(&mut self, lobe: &Ellipsoid, points: &[Point]) {
         let [x, y] = self.sigma();
-        for lobe in
-            TURNS.iter().filter_map(|turn| lobe.with_skew(Skew::new([x, y], *turn).ok()?).ok())
-        {
+        let turned = |turn: [f64; 3]| lobe.with_skew(Skew::new([x, y], turn).ok()?).ok();
+        for lobe in TURNS.into_iter().filter_map(turned) {
             let v = points[0].view();
-            let g1 = f64::from(lobe.g1(v));
-            self.require((0.0..=1.0).contains(&g1), "ellipsoid g1 outside [0, 1]", g1, &points[0]);
+            self.share(lobe.g1(v), "ellipsoid g1 outside [0, 1]", &points[0]);
             for at in points {
                 let m = lobe.sample_visible_normal(v, at.u);
-                let length = m.as_dvec3().length();
-                self.require(
-                    (length - 1.0).abs() <= ULP4,
-                    "ellipsoid normal not of unit length",
-                    length,
-                    at,
-                );
+                self.unit(m.as_dvec3(), ULP4, "ellipsoid normal not of unit length", at);
                 let l = 2.0 * v.dot(m) * m - v;
                 let weight = f64::from(lobe.reflection_weight(v, l, Masking::Uncorrelated));
                 let sound = (0.0..=1.0 + ULP4).contains(&weight);
                 self.require(sound, "ellipsoid weight outside [0, 1]", weight, at);
                 for pdf in [lobe.d(m), lobe.visible_normal_pdf(v, m)] {
-                    let sound = pdf >= 0.0 && pdf.is_finite();
-                    self.require(sound, "ellipsoid density negative, NaN or inf", pdf.into(), at);
+                    self.density(pdf, "ellipsoid density negative, NaN or inf", at);
                 }
             }
         }
@@ -100,40 +71,19 @@ impl Checker<'_> {
     /// Tests albedo and compensation at a view; the random number `u[1]` places the light.
     pub(super) fn albedo(&mut self, albedo: &Albedo, at: &Point) {
         let v = at.view();
-        let whole = f64::from(albedo.albedo(v));
-        self.require((0.0..=1.0).contains(&whole), "albedo outside [0, 1]", whole, at);
-        let average = f64::from(albedo.albedo_average());
-        self.require((0.0..=1.0).contains(&average), "albedo_average outside [0, 1]", average, at);
+        self.share(albedo.albedo(v), "albedo outside [0, 1]", at);
+        self.share(albedo.albedo_average(), "albedo_average outside [0, 1]", at);
         let l = direction(1.6 * f64::from(at.u[1]), at.phi + 1.0);
         let lobe = albedo.compensation(v, l);
-        self.require(
-            lobe >= 0.0 && lobe.is_finite(),
-            "compensation negative, NaN or inf",
-            lobe.into(),
-            at,
-        );
+        self.density(lobe, "compensation negative, NaN or inf", at);
         let swapped = albedo.compensation(l, v);
-        self.require(lobe == swapped, "compensation not symmetric", (lobe - swapped).into(), at);
+        self.require(lobe == swapped, "compensation not symmetric", lobe - swapped, at);
         let factor = f64::from(albedo.turquin(v, at.u[0]));
-        self.require(
-            (1.0..=1.1e6).contains(&factor),
-            "turquin factor outside [1, 1e6]",
-            factor,
-            at,
-        );
-        let kept = f64::from(albedo.multiple_bounces(at.u[0]));
-        self.require((0.0..=1.0).contains(&kept), "multiple_bounces outside [0, 1]", kept, at);
-        self.unit_and_above_or_level(albedo.sample_compensation(at.u), at);
-    }
-
-    fn unit_and_above_or_level(&mut self, l: Vec3, at: &Point) {
-        let length = l.as_dvec3().length();
-        self.require(
-            (length - 1.0).abs() <= ULP4,
-            "compensation light not of unit length",
-            length,
-            at,
-        );
-        self.require(l.z >= 0.0, "compensation light below the horizon", l.z.into(), at);
+        let sound = (1.0..=1.1e6).contains(&factor);
+        self.require(sound, "turquin factor outside [1, 1e6]", factor, at);
+        self.share(albedo.multiple_bounces(at.u[0]), "multiple_bounces outside [0, 1]", at);
+        let l = albedo.sample_compensation(at.u);
+        self.unit(l.as_dvec3(), ULP4, "compensation light not of unit length", at);
+        self.require(l.z >= 0.0, "compensation light below the horizon", l.z, at);
     }
 }
