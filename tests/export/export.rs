@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::fs;
 
 use crate::common::{names, ok, refused, run};
+use crate::{colours, image, json};
 use glam::Vec3;
 use microfacet_sampler::{Masking, MicrofacetDistribution, Tables};
 use microfacet_tables::axis::LogRoughness;
@@ -30,9 +31,8 @@ fn arrays(header: &str) -> BTreeMap<String, Vec<f32>> {
 fn a_shape_is_a_small_header_beside_the_functions() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    let export = ["export", "c", "--gamma", "3,1.65", "--gamma", "inf", "--gamma", "1.501"];
-    let more = ["--gamma", "2", "--gamma", "3.0", "--gamma", "1e300", "--out", "out"];
-    ok(at, &[&export[..], &more].concat());
+    let gammas = ["3,1.65", "inf", "1.501", "2", "3.0", "1e300"].map(|gamma| ["--gamma", gamma]);
+    ok(at, &[&["export", "c", "--out", "out"], gammas.as_flattened()].concat());
     let out = at.join("out");
     let shapes =
         ["1e300", "1p501", "1p65", "2", "3", "inf"].map(|g| format!("student_t_gamma_{g}.h"));
@@ -134,9 +134,7 @@ fn other_sets_are_exported_with_what_they_lack() {
     let text = fs::read_to_string(at.join("out/student_t_gamma_4.h")).unwrap();
     assert!(text.contains("masking are those of the default set"), "{text}");
     ok(at, &["export", "wgsl", "--gamma", "4", "--tables", "set", "--out", "shader"]);
-    let json = fs::read_to_string(at.join("shader/student_t.json")).unwrap();
-    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
-    let forms = &json["shapes"]["4"]["albedos_of_default_set"];
+    let forms = &json(&at.join("shader/student_t.json"))["shapes"]["4"]["albedos_of_default_set"];
     assert_eq!(forms, &serde_json::json!(["uncorrelated", "height-correlated"]));
     // Draft tables are smaller.
     ok(at, &["export", "c", "--gamma", "4", "--out", "default"]);
@@ -265,8 +263,7 @@ fn the_data_of_shaders_is_where_its_description_says() {
     let bytes = fs::read(at.join("student_t.bin")).unwrap();
     let numbers: Vec<f32> =
         bytes.chunks(4).map(|bytes| f32::from_le_bytes(bytes.try_into().unwrap())).collect();
-    let text = fs::read_to_string(at.join("student_t.json")).unwrap();
-    let description: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let description = json(&at.join("student_t.json"));
     let count = |value: &serde_json::Value| value.as_u64().unwrap() as usize;
     let (width, height) = (count(&description["width"]), count(&description["height"]));
     assert_eq!(numbers.len(), 2 * width * height);
@@ -282,30 +279,17 @@ fn the_data_of_shaders_is_where_its_description_says() {
     assert_eq!(description["crc32"], serde_json::to_value(listed).unwrap());
 
     // The image has the same numbers.
-    let image = exr::prelude::read_first_flat_layer_from_file(at.join("student_t.exr")).unwrap();
-    let layer = image.layer_data;
-    assert_eq!((layer.size.x(), layer.size.y()), (width, height));
-    let plane = |channel: usize| numbers.iter().skip(channel).step_by(2).copied().collect();
-    let expected: [(&str, Vec<f32>); 3] =
-        [("B", vec![0.0; width * height]), ("G", plane(1)), ("R", plane(0))];
-    assert_eq!(layer.channel_data.list.len(), expected.len());
-    for (stored, (name, expected)) in layer.channel_data.list.iter().zip(expected) {
-        let values: Vec<f32> = stored.sample_data.values_as_f32().collect();
-        assert!(stored.name == *name && values == expected, "{name}");
-    }
+    assert!(image(&at.join("student_t.exr")) == ([width, height], colours(&numbers)));
 
     let shapes = description["shapes"].as_object().unwrap();
     assert_eq!(shapes.keys().collect::<Vec<_>>(), ["1.65", "2", "3", "inf"]);
     for (gamma, shape) in shapes {
         let start = 2 * count(&shape["offset"]);
-        let members: Vec<(&str, f32)> = shape["members"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(|member| {
-                (member["name"].as_str().unwrap(), member["value"].as_f64().unwrap() as f32)
-            })
-            .collect();
+        let member = |member: &serde_json::Value| {
+            (member["name"].as_str().unwrap().to_owned(), member["value"].as_f64().unwrap() as f32)
+        };
+        let members: Vec<(String, f32)> =
+            shape["members"].as_array().unwrap().iter().map(member).collect();
         for (i, (name, value)) in members.iter().enumerate() {
             assert_eq!(numbers[start + i], *value, "{gamma}: {name}");
         }

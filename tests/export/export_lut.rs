@@ -5,6 +5,7 @@ use std::fs;
 use std::io::Cursor;
 
 use crate::common::{names, ok, refused, run};
+use crate::{colours, image, json};
 use microfacet_baker::bake::albedo::weights;
 use microfacet_baker::progress::Stage;
 use microfacet_export::texture::engine::{LAYOUTS, Layout};
@@ -16,9 +17,13 @@ use microfacet_model::{AlbedoIntegrator, Shape};
 use microfacet_sampler::Masking;
 use microfacet_study::engines::shipped;
 use microfacet_tables::axis::LogShape;
-use serde_json::Value;
 
 const CORRELATED: Masking = Masking::HeightCorrelated;
+
+/// A texture of height-correlated masking, and that of its averages.
+fn specs(shapes: Shapes, sigma_max: f64, size: &[usize], channels: Channels) -> [TextureSpec; 2] {
+    TextureSpec::of_shapes("lut", shapes, sigma_max, size, CORRELATED, channels)
+}
 
 fn made(spec: &TextureSpec) -> Texture {
     spec.make(&Stage::unwatched()).unwrap()
@@ -31,8 +36,7 @@ fn errors(spec: &TextureSpec, texture: &Texture) -> Vec<Deviation> {
 #[test]
 fn errors_are_as_promised() {
     let of = |shapes, sigma_max, size: [usize; 2], channels| {
-        let [spec, average] =
-            TextureSpec::of_shapes("lut", shapes, sigma_max, &size, CORRELATED, channels);
+        let [spec, average] = specs(shapes, sigma_max, &size, channels);
         let average = errors(&average, &made(&average))[0].largest;
         (errors(&spec, &made(&spec)), average)
     };
@@ -54,10 +58,7 @@ fn errors_are_as_promised() {
 /// What a volume states holds at other places, about which the certificate did not ask.
 #[test]
 fn a_volume_errs_by_what_it_states() {
-    let shapes = Shapes::DownTo(1.6);
-    let size = [4, 12, 12];
-    let [spec, average] =
-        TextureSpec::of_shapes("lut", shapes, 3.0, &size, CORRELATED, Channels::E);
+    let [spec, average] = specs(Shapes::DownTo(1.6), 3.0, &[4, 12, 12], Channels::E);
     // The middles of cells, and beside.
     let last = LogShape::BAKED.coordinate(1.6);
     for (i, cell) in [0.5, 1.45, 2.5, 2.6].into_iter().enumerate() {
@@ -81,14 +82,7 @@ fn a_volume_errs_by_what_it_states() {
 
 #[test]
 fn a_wrong_texel_is_seen() {
-    let [spec, _] = TextureSpec::of_shapes(
-        "lut",
-        Shapes::One(3.0),
-        1.0,
-        &[16, 16],
-        CORRELATED,
-        Channels::OneMinusE,
-    );
+    let [spec, _] = specs(Shapes::One(3.0), 1.0, &[16, 16], Channels::OneMinusE);
     let good = made(&spec);
     let before = errors(&spec, &good)[0].largest;
     for texel in [0, 15, 7 * 16 + 9, 255] {
@@ -103,8 +97,7 @@ fn a_wrong_texel_is_seen() {
 /// Values at the texels, where a texture is too large to fit.
 #[test]
 fn exact_texels_are_those_of_the_model() {
-    let [spec, _] =
-        TextureSpec::of_shapes("lut", Shapes::One(2.0), 1.0, &[8, 16], CORRELATED, Channels::E);
+    let [spec, _] = specs(Shapes::One(2.0), 1.0, &[8, 16], Channels::E);
     let spec = TextureSpec { fitted: false, ..spec };
     let texture = made(&spec);
     assert_eq!(texture.values.len(), 128);
@@ -153,7 +146,7 @@ fn files_hold_the_same_values() {
     let forms = ["dds", "exr", "h", "json", "ktx2", "npy"];
     let expected = ["lut", "lut_average"].map(|name| forms.map(|form| format!("{name}.{form}")));
     assert_eq!(names(&out), expected.concat());
-    let json: Value = serde_json::from_slice(&fs::read(out.join("lut.json")).unwrap()).unwrap();
+    let json = json(&out.join("lut.json"));
     let values: Vec<f32> = serde_json::from_value(json["data"].clone()).unwrap();
     assert_eq!(values.len(), 4 * 5 * 6);
     assert!(json["largest_rounding_to_f16"].as_f64().unwrap() <= 2.5e-4);
@@ -386,39 +379,29 @@ fn two_channels_are_written_as_three_colours() {
     ok(at, &[&export[..], &["--channels", "scale-bias", "--out", "out"]].concat());
     let npy = fs::read(at.join("out/lut.npy")).unwrap();
     let values: Vec<f32> = npyz::NpyFile::new(Cursor::new(npy)).unwrap().into_vec().unwrap();
-    let image = exr::prelude::read_first_flat_layer_from_file(at.join("out/lut.exr")).unwrap();
-    let channels = image.layer_data.channel_data.list;
-    let plane = |channel: usize| values.iter().skip(channel).step_by(2).copied().collect();
-    let expected: [(&str, Vec<f32>); 3] = [("B", vec![0.0; 20]), ("G", plane(1)), ("R", plane(0))];
-    assert_eq!(channels.len(), expected.len());
-    for (stored, (name, expected)) in channels.iter().zip(expected) {
-        let found: Vec<f32> = stored.sample_data.values_as_f32().collect();
-        assert!(stored.name == *name && found == expected, "{name}: {found:?}");
-    }
+    assert_eq!(image(&at.join("out/lut.exr")), ([5, 4], colours(&values)));
 }
 
 #[test]
 fn layouts_are_written() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    let export = ["export", "lut", "--layout"];
-    let output = run(at, &[&export[..], &["osl", "--fit", "--out", "out"]].concat());
-    assert!(output.status.success());
-    let notes = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(notes.contains("put the file in place of SPI/microfacet_tools_luts.h"), "{notes}");
+    let notes = |more: &[&str]| {
+        let output = run(at, &[&["export", "lut", "--out", "out", "--layout"], more].concat());
+        assert!(output.status.success());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let osl = notes(&["osl", "--fit"]);
+    assert!(osl.contains("put the file in place of SPI/microfacet_tools_luts.h"), "{osl}");
     let text = fs::read_to_string(at.join("out/microfacet_tools_luts.h")).unwrap();
     assert!(text.contains("BSDL_INLINE_METHOD MiniMicrofacetGGX::Energy& "), "{text}");
     assert_eq!(text.matches("f,").count(), 256);
-    let babylon = ["babylon", "--size", "8x8", "--out", "out"];
-    let output = run(at, &[&export[..], &babylon].concat());
-    let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+    let babylon = notes(&["babylon", "--size", "8x8"]);
     for needed in ["isRGBD = true", "noMipmap", "invertY", "CLAMP_ADDRESSMODE"] {
-        assert!(notes.contains(needed), "{notes}");
+        assert!(babylon.contains(needed), "{babylon}");
     }
-    let other = ["three", "--size", "8x8", "--gamma", "3", "--out", "out"];
-    let output = run(at, &[&export[..], &other].concat());
-    let notes = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(notes.contains("has 16x16 texels: change its constants"), "{notes}");
+    let three = notes(&["three", "--size", "8x8", "--gamma", "3"]);
+    assert!(three.contains("has 16x16 texels: change its constants"), "{three}");
 }
 
 #[test]

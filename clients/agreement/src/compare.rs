@@ -51,7 +51,7 @@ const ROUGH: f32 = 10.0;
 const SLOW: f64 = 1.6;
 const HEAVY: f64 = 1.8;
 /// Below it single precision has not all its digits.
-const SMALLEST: f64 = 1.2e-38;
+pub(crate) const SMALLEST: f64 = 1.2e-38;
 
 impl Limits {
     /// What a density may differ by in relation to itself.
@@ -70,15 +70,6 @@ pub(crate) struct Worst<'a> {
 impl<'a> Worst<'a> {
     pub(crate) fn new(limits: &'a Limits) -> Self {
         Self { limits, seen: BTreeMap::new() }
-    }
-
-    fn see(&mut self, name: &'static str, difference: f64, allowed: f64, at: impl Fn() -> String) {
-        // NaN is worse than any number.
-        let difference = if difference.is_nan() { f64::INFINITY } else { difference };
-        let entry = self.seen.entry(name).or_default();
-        if difference / allowed > entry.0 || entry.2.is_empty() {
-            *entry = (difference / allowed, difference, at());
-        }
     }
 
     /// Prints the table, and returns whether all are within what is allowed.
@@ -100,39 +91,46 @@ impl<'a> Worst<'a> {
         answers: &[Answer],
     ) -> usize {
         let (sigma, mut count) = (group.points[0].sigma, 0);
-        let (lobe, albedos) = (lobe(tables, sigma, gamma), Albedos::new(tables, sigma, gamma));
+        let (lobe, albedos) = (lobe(tables, sigma, gamma), albedos(tables, sigma, gamma));
         for (point, answer) in group.points.iter().zip(answers) {
-            let at = || format!("{language}, gamma {gamma}, {} {point:?}", group.name);
             if has_nan(point) && !self.limits.of_nan {
                 continue;
             }
             count += 1;
+            let (limits, at) = (self.limits, [language, group.name]);
+            let mut case = Case { limits, seen: &mut self.seen, at, gamma, point, answer };
             if is_odd(point) {
-                sound(self, answer, &at);
+                case.ranges();
             } else {
-                numbers(self, point, answer, &at);
-                directions(self, &lobe, gamma, point, answer, &at);
-                shares(self, &albedos, gamma, point, answer, &at);
+                case.numbers();
+                case.directions(&lobe);
+                case.densities(&lobe);
+                case.shares(albedos.as_ref());
             }
         }
         count
     }
 }
 
-/// What the crate says of the albedos of one roughness, under both forms of masking; nothing of a
-/// mirror, which σ ≤ 0 is to exports.
-struct Albedos(Option<[Albedo; 2]>);
+/// A point with what a language says of it.
+struct Case<'a> {
+    limits: &'a Limits,
+    seen: &'a mut BTreeMap<&'static str, (f64, f64, String)>,
+    at: [&'a str; 2],
+    gamma: f64,
+    point: &'a Point,
+    answer: &'a Answer,
+}
 
-impl Albedos {
-    /// Of the stand-in, within the range of the tables.
-    fn new(tables: &Tables, sigma: [f32; 2], gamma: f64) -> Self {
-        if !sigma.iter().all(|sigma| *sigma > 0.0) {
-            return Self(None);
-        }
-        let [x, y] = clamped(sigma).map(f64::from);
-        let sigma = (x * y).sqrt().clamp(1e-8, 3.0);
-        Self(Some(Masking::ALL.map(|masking| tables.albedo(sigma, gamma, masking).unwrap())))
+/// What the crate says of the albedos of one roughness, under both forms of masking: of the stand-in,
+/// within the range of the tables. Nothing of a mirror, which σ ≤ 0 is to exports.
+fn albedos(tables: &Tables, sigma: [f32; 2], gamma: f64) -> Option<[Albedo; 2]> {
+    if !sigma.iter().all(|sigma| *sigma > 0.0) {
+        return None;
     }
+    let [x, y] = clamped(sigma).map(f64::from);
+    let sigma = (x * y).sqrt().clamp(1e-8, 3.0);
+    Some(Masking::ALL.map(|masking| tables.albedo(sigma, gamma, masking).unwrap()))
 }
 
 /// The roughness as exports take it.
@@ -151,27 +149,14 @@ fn lobe(tables: &Tables, sigma: [f32; 2], gamma: f64) -> Lobe {
     }
 }
 
-/// Whether a direction or a number is NaN.
 fn has_nan(point: &Point) -> bool {
     let directions = [point.v, point.l, point.m];
     let scalars = point.u.iter().chain(&point.sigma);
     directions.as_flattened().iter().chain(scalars).any(|x| x.is_nan())
 }
 
-/// How far two numbers are apart.
 fn far(a: f32, b: f32) -> f64 {
     (f64::from(a) - f64::from(b)).abs()
-}
-
-/// Whether every number is one, and what must vanish does.
-fn numbers(worst: &mut Worst<'_>, point: &Point, answer: &Answer, at: &dyn Fn() -> String) {
-    let mut all = bytemuck::cast_slice::<_, f32>(std::slice::from_ref(answer)).iter();
-    let finite = all.all(|x| x.is_finite() || *x == answer.lambda);
-    let lambda = (0.0..=worst.limits.lambda).contains(&answer.lambda);
-    let behind = Vec3::from(point.v).dot(Vec3::from(point.m)) < -1e-6 || !(point.m[2] > 0.0);
-    let vanishes = !behind || answer.reflection_pdf == 0.0 && answer.pdf == 0.0;
-    let sound = finite && lambda && vanishes && answer.reflection_pdf >= 0.0;
-    worst.see("numbers", if sound { 0.0 } else { f64::INFINITY }, 1.0, at);
 }
 
 /// Whether a direction has NaN, or a view is neither null nor of length 1: then results are only
@@ -182,89 +167,6 @@ fn is_odd(point: &Point) -> bool {
     has_nan || length > 0.0 && (length - 1.0).abs() > 1e-6
 }
 
-/// Whether every number is in its range.
-fn sound(worst: &mut Worst<'_>, answer: &Answer, at: &dyn Fn() -> String) {
-    let parts = [answer.parts, answer.average_parts];
-    let shares = [answer.g2, answer.weight, answer.albedo, answer.average];
-    let shares = shares.as_flattened().iter().chain(parts.as_flattened().as_flattened());
-    let mut sound = shares.chain([&answer.g1]).all(|x| (0.0..=1.0).contains(x));
-    let densities = [answer.d, answer.pdf, answer.reflection_pdf];
-    sound &= densities.iter().chain(&answer.compensation).all(|x| *x >= 0.0 && x.is_finite());
-    sound &= answer.lambda >= 0.0;
-    sound &= (Vec3::from(answer.normal).length() - 1.0).abs() < 1e-6 && answer.normal[2] > 0.0;
-    worst.see("range elsewhere", if sound { 0.0 } else { f64::INFINITY }, 1.0, at);
-}
-
-fn directions(
-    worst: &mut Worst<'_>,
-    lobe: &Lobe,
-    gamma: f64,
-    point: &Point,
-    answer: &Answer,
-    at: &dyn Fn() -> String,
-) {
-    let limits = worst.limits;
-    let (sigma, u) = (clamped(point.sigma), point.u);
-    let [v, l, m] = [point.v, point.l, point.m].map(Vec3::from);
-    worst.see("g1", far(answer.g1, lobe.g1(v)), limits.share, at);
-    let lambda = far(1.0 / (1.0 + answer.lambda), lobe.g1(v));
-    worst.see("lambda, by G1", lambda, limits.share, at);
-    for (k, masking) in Masking::ALL.into_iter().enumerate() {
-        worst.see("g2", far(answer.g2[k], lobe.g2(v, l, masking)), limits.share, at);
-        let weight = lobe.reflection_weight(v, l, masking);
-        worst.see("reflection_weight", far(answer.weight[k], weight), limits.share, at);
-    }
-    let normal = lobe.sample_visible_normal(v, u).to_array();
-    let is_rough = sigma[0].max(sigma[1]) > ROUGH;
-    let heavy = gamma < HEAVY && (is_rough || v.z < 1e-6);
-    let (mut name, mut allowed) =
-        if heavy { ("normal, heavy", limits.heavy) } else { ("normal", limits.normal) };
-    // NaN is worse than any number; a maximum would pass over it.
-    let apart = |a: [f32; 3], b: [f32; 3]| {
-        let apart = [far(a[0], b[0]), far(a[1], b[1]), far(a[2], b[2])];
-        let most = apart.into_iter().fold(0.0, f64::max);
-        if apart.iter().any(|x| x.is_nan()) { f64::INFINITY } else { most }
-    };
-    let mut difference = apart(answer.normal, normal);
-    match limits.rough {
-        Rough::Coordinates(limit) if is_rough => (name, allowed) = ("normal, rough", limit),
-        Rough::Stretched if is_rough => {
-            let [a, b] = [answer.normal, normal].map(|m| unstretched(m, sigma));
-            if difference.is_finite() {
-                difference = difference.min(apart(a, b));
-            }
-        }
-        _ => (),
-    }
-    worst.see(name, difference, allowed, at);
-    let light = 2.0 * v.dot(m) * m - v;
-    for (a, b) in answer.light.into_iter().zip(light.to_array()) {
-        worst.see("reflect", far(a, b), limits.share, at);
-    }
-    let above = if answer.normal[2] > 0.0 { 0.0 } else { f64::INFINITY };
-    worst.see("normal above", above, 1.0, at);
-
-    let d = lobe.d(m);
-    let allowed = limits.density(f64::from(d), sigma);
-    let mut density = |name, a: f32, b: f32| {
-        let difference = far(a, b);
-        if difference.is_nan() || difference > SMALLEST {
-            worst.see(name, difference / f64::from(b), allowed, at);
-        }
-    };
-    density("d", answer.d, d);
-    density("visible_normal_pdf", answer.pdf, lobe.visible_normal_pdf(v, m));
-    let facing = v.dot(m);
-    // Elsewhere the quotient loses its digits, or has overflowed.
-    if facing > 0.0 && (1e-30..1e37).contains(&answer.pdf) {
-        let quotient = f64::from(answer.pdf) / (4.0 * f64::from(facing));
-        let difference = (f64::from(answer.reflection_pdf) - quotient).abs();
-        if difference > SMALLEST && quotient < 1e37 {
-            worst.see("reflection_pdf", difference / quotient, limits.density[0], at);
-        }
-    }
-}
-
 /// The normal of σ = 1 from which this one is stretched.
 fn unstretched([x, y, z]: [f32; 3], [sigma_x, sigma_y]: [f32; 2]) -> [f32; 3] {
     let [x, y, z] = [x, y, z].map(f64::from);
@@ -273,48 +175,142 @@ fn unstretched([x, y, z]: [f32; 3], [sigma_x, sigma_y]: [f32; 2]) -> [f32; 3] {
     m.map(|x| (x / length) as f32)
 }
 
-fn shares(
-    worst: &mut Worst<'_>,
-    albedos: &Albedos,
-    gamma: f64,
-    point: &Point,
-    answer: &Answer,
-    at: &dyn Fn() -> String,
-) {
-    let limits = worst.limits;
-    let [v, l] = [point.v, point.l].map(Vec3::from);
-    let (name, parts, share) = match v.z {
-        z if gamma < SLOW && z < 1e-20 => {
-            ("albedo, at horizon", "parts, at horizon", limits.extrapolated[1])
+/// How far apart two directions are by a coordinate. NaN is worse than any number; a maximum would
+/// pass over it.
+fn apart(a: [f32; 3], b: [f32; 3]) -> f64 {
+    let apart = [far(a[0], b[0]), far(a[1], b[1]), far(a[2], b[2])];
+    let most = apart.into_iter().fold(0.0, f64::max);
+    if apart.iter().any(|x| x.is_nan()) { f64::INFINITY } else { most }
+}
+
+fn in_order(Moments { scale, bias, f82 }: Moments) -> [f32; 3] {
+    [scale, bias, f82]
+}
+
+impl Case<'_> {
+    fn see(&mut self, name: &'static str, difference: f64, allowed: f64) {
+        // NaN is worse than any number.
+        let difference = if difference.is_nan() { f64::INFINITY } else { difference };
+        let entry = self.seen.entry(name).or_default();
+        if difference / allowed > entry.0 || entry.2.is_empty() {
+            let [language, group] = self.at;
+            let at = format!("{language}, gamma {}, {group} {:?}", self.gamma, self.point);
+            *entry = (difference / allowed, difference, at);
         }
-        z if gamma < SLOW && z < 1e-6 => {
-            ("albedo, close to it", "parts, close to it", limits.extrapolated[0])
+    }
+
+    /// What holds or does not.
+    fn holds(&mut self, name: &'static str, holds: bool) {
+        self.see(name, if holds { 0.0 } else { f64::INFINITY }, 1.0);
+    }
+
+    /// Whether every number is one, and what must vanish does.
+    fn numbers(&mut self) {
+        let (point, answer) = (self.point, self.answer);
+        let mut all = bytemuck::cast_slice::<_, f32>(std::slice::from_ref(answer)).iter();
+        let finite = all.all(|x| x.is_finite() || *x == answer.lambda);
+        let lambda = (0.0..=self.limits.lambda).contains(&answer.lambda);
+        let behind = Vec3::from(point.v).dot(Vec3::from(point.m)) < -1e-6 || !(point.m[2] > 0.0);
+        let vanishes = !behind || answer.reflection_pdf == 0.0 && answer.pdf == 0.0;
+        self.holds("numbers", finite && lambda && vanishes && answer.reflection_pdf >= 0.0);
+    }
+
+    fn ranges(&mut self) {
+        let answer = self.answer;
+        let parts = [answer.parts, answer.average_parts];
+        let shares = [answer.g2, answer.weight, answer.albedo, answer.average];
+        let shares = shares.as_flattened().iter().chain(parts.as_flattened().as_flattened());
+        let mut sound = shares.chain([&answer.g1]).all(|x| (0.0..=1.0).contains(x));
+        let densities = [answer.d, answer.pdf, answer.reflection_pdf];
+        sound &= densities.iter().chain(&answer.compensation).all(|x| *x >= 0.0 && x.is_finite());
+        sound &= answer.lambda >= 0.0;
+        sound &= (Vec3::from(answer.normal).length() - 1.0).abs() < 1e-6 && answer.normal[2] > 0.0;
+        self.holds("range elsewhere", sound);
+    }
+
+    fn directions(&mut self, lobe: &Lobe) {
+        let (limits, point, answer) = (self.limits, self.point, self.answer);
+        let sigma = clamped(point.sigma);
+        let [v, l, m] = [point.v, point.l, point.m].map(Vec3::from);
+        self.see("g1", far(answer.g1, lobe.g1(v)), limits.share);
+        self.see("lambda, by G1", far(1.0 / (1.0 + answer.lambda), lobe.g1(v)), limits.share);
+        for (k, masking) in Masking::ALL.into_iter().enumerate() {
+            self.see("g2", far(answer.g2[k], lobe.g2(v, l, masking)), limits.share);
+            let weight = lobe.reflection_weight(v, l, masking);
+            self.see("reflection_weight", far(answer.weight[k], weight), limits.share);
         }
-        _ => ("albedo", "albedo_parts", limits.share),
-    };
-    let Some(albedos) = &albedos.0 else {
-        let whole = [answer.albedo, answer.average].as_flattened().iter().all(|e| *e == 1.0);
-        let sound = whole && answer.compensation == [0.0; 2];
-        worst.see("mirror", if sound { 0.0 } else { f64::INFINITY }, 1.0, at);
-        return;
-    };
-    for (k, albedo) in albedos.iter().enumerate() {
-        worst.see(name, far(answer.albedo[k], albedo.albedo(v)), share, at);
-        worst.see(
-            "albedo_average",
-            far(answer.average[k], albedo.albedo_average()),
-            limits.average,
-            at,
-        );
-        let in_order = |Moments { scale, bias, f82 }| [scale, bias, f82];
-        for (i, part) in in_order(albedo.moments(v)).into_iter().enumerate() {
-            worst.see(parts, far(answer.parts[k][i], part), share, at);
+        let normal = lobe.sample_visible_normal(v, point.u).to_array();
+        let is_rough = sigma[0].max(sigma[1]) > ROUGH;
+        let heavy = self.gamma < HEAVY && (is_rough || v.z < 1e-6);
+        let (mut name, mut allowed) =
+            if heavy { ("normal, heavy", limits.heavy) } else { ("normal", limits.normal) };
+        let mut difference = apart(answer.normal, normal);
+        match limits.rough {
+            Rough::Coordinates(limit) if is_rough => (name, allowed) = ("normal, rough", limit),
+            Rough::Stretched if is_rough && difference.is_finite() => {
+                let [a, b] = [answer.normal, normal].map(|m| unstretched(m, sigma));
+                difference = difference.min(apart(a, b));
+            }
+            _ => (),
         }
-        for (i, part) in in_order(albedo.average_moments()).into_iter().enumerate() {
-            let difference = far(answer.average_parts[k][i], part);
-            worst.see("albedo_average_parts", difference, limits.average, at);
+        self.see(name, difference, allowed);
+        let light = 2.0 * v.dot(m) * m - v;
+        self.see("reflect", apart(answer.light, light.to_array()), limits.share);
+        self.holds("normal above", answer.normal[2] > 0.0);
+    }
+
+    fn densities(&mut self, lobe: &Lobe) {
+        let answer = self.answer;
+        let [v, m] = [self.point.v, self.point.m].map(Vec3::from);
+        let d = lobe.d(m);
+        let allowed = self.limits.density(f64::from(d), clamped(self.point.sigma));
+        for (name, got, want) in
+            [("d", answer.d, d), ("visible_normal_pdf", answer.pdf, lobe.visible_normal_pdf(v, m))]
+        {
+            let difference = far(got, want);
+            if difference.is_nan() || difference > SMALLEST {
+                self.see(name, difference / f64::from(want), allowed);
+            }
         }
-        if v.z > 0.0 && l.z > 0.0 {
+        let facing = v.dot(m);
+        // Elsewhere the quotient loses its digits, or has overflowed.
+        if facing > 0.0 && (1e-30..1e37).contains(&answer.pdf) {
+            let quotient = f64::from(answer.pdf) / (4.0 * f64::from(facing));
+            let difference = (f64::from(answer.reflection_pdf) - quotient).abs();
+            if difference > SMALLEST && quotient < 1e37 {
+                self.see("reflection_pdf", difference / quotient, self.limits.density[0]);
+            }
+        }
+    }
+
+    fn shares(&mut self, albedos: Option<&[Albedo; 2]>) {
+        let (limits, answer) = (self.limits, self.answer);
+        let [v, l] = [self.point.v, self.point.l].map(Vec3::from);
+        let (name, parts, share) = match v.z {
+            z if self.gamma < SLOW && z < 1e-20 => {
+                ("albedo, at horizon", "parts, at horizon", limits.extrapolated[1])
+            }
+            z if self.gamma < SLOW && z < 1e-6 => {
+                ("albedo, close to it", "parts, close to it", limits.extrapolated[0])
+            }
+            _ => ("albedo", "albedo_parts", limits.share),
+        };
+        let Some(albedos) = albedos else {
+            let whole = [answer.albedo, answer.average].as_flattened().iter().all(|e| *e == 1.0);
+            self.holds("mirror", whole && answer.compensation == [0.0; 2]);
+            return;
+        };
+        for (k, albedo) in albedos.iter().enumerate() {
+            self.see(name, far(answer.albedo[k], albedo.albedo(v)), share);
+            let average = far(answer.average[k], albedo.albedo_average());
+            self.see("albedo_average", average, limits.average);
+            self.see(parts, apart(answer.parts[k], in_order(albedo.moments(v))), share);
+            let average = apart(answer.average_parts[k], in_order(albedo.average_moments()));
+            self.see("albedo_average_parts", average, limits.average);
+            if !(v.z > 0.0 && l.z > 0.0) {
+                self.see("compensation", f64::from(answer.compensation[k]), limits.share);
+                continue;
+            }
             let [v, l, average] = [albedo.lost(v), albedo.lost(l), albedo.lost_average()];
             let [v, l, average] = [v, l, average].map(f64::from);
             let both = v * l * std::f64::consts::FRAC_1_PI;
@@ -322,10 +318,8 @@ fn shares(
             // As much as what it is made of may differ. An average of next to nothing says little.
             if average > 1e-3 {
                 let allowed = (both * limits.average / average + 2.0 * limits.share) / average;
-                worst.see("compensation", difference, allowed, at);
+                self.see("compensation", difference, allowed);
             }
-        } else {
-            worst.see("compensation", f64::from(answer.compensation[k]), limits.share, at);
         }
     }
 }

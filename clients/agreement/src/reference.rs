@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use crate::compare::SMALLEST;
 use crate::lookup::{Answer, Point};
 use crate::{Foreign, Limits};
 
@@ -36,6 +37,7 @@ pub(crate) fn compare(
         };
         let masking = usize::from(row["masking"] == "height-correlated");
         for (_, answers) in foreign.answers(shape, &[point]) {
+            let density = || limits.density(number("d_table").unwrap(), point.sigma);
             for (name, value, allowed) in columns(&answers[0], masking, limits) {
                 let is_ggx = gamma == 2.0;
                 let exact = is_ggx && ["g1", "g2", "d", "density"].contains(&name);
@@ -46,11 +48,9 @@ pub(crate) fn compare(
                 let Some(want) = number(&column) else { continue };
                 let difference = (f64::from(value) - want).abs();
                 let share = match allowed {
-                    Allowed::Absolute(allowed) => difference / allowed,
-                    Allowed::Density if difference <= 1.2e-38 => 0.0,
-                    Allowed::Density => {
-                        difference / want / limits.density(number("d_table").unwrap(), point.sigma)
-                    }
+                    Some(allowed) => difference / allowed,
+                    None if difference <= SMALLEST => 0.0,
+                    None => difference / want / density(),
                 };
                 // NaN is worse than any number.
                 let share = if share.is_nan() { f64::INFINITY } else { share };
@@ -70,25 +70,22 @@ pub(crate) fn compare(
     share <= 1.0 && cells > 0 && skipped == 0
 }
 
-#[derive(Clone, Copy)]
-enum Allowed {
-    Absolute(f64),
-    Density,
-}
-
-/// Columns with what answers say of them.
-fn columns(answer: &Answer, masking: usize, limits: &Limits) -> [(&'static str, f32, Allowed); 14] {
-    use Allowed::Density;
-    let [share, normal, average] =
-        [limits.share, limits.normal, limits.average].map(Allowed::Absolute);
+/// Columns with what answers say of them, and what they may differ by; densities have no limit of
+/// their own.
+fn columns(
+    answer: &Answer,
+    masking: usize,
+    limits: &Limits,
+) -> [(&'static str, f32, Option<f64>); 14] {
+    let [share, normal, average] = [limits.share, limits.normal, limits.average].map(Some);
     let [nx, ny, nz] = answer.normal;
     let [scale, bias, f82] = answer.parts[masking];
     let [_, bias_avg, f82_avg] = answer.average_parts[masking];
     [
         ("g1", answer.g1, share),
         ("g2", answer.g2[masking], share),
-        ("d", answer.d, Density),
-        ("density", answer.pdf, Density),
+        ("d", answer.d, None),
+        ("density", answer.pdf, None),
         ("nx", nx, normal),
         ("ny", ny, normal),
         ("nz", nz, normal),

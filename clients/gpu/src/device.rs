@@ -54,21 +54,8 @@ impl Gpu {
 
     /// Tables as a texture.
     pub fn texture(&self, tables: &Tables) -> Bound {
-        let (width, height) = (tables.width, tables.height);
-        let descriptor = wgpu::TextureDescriptor {
-            label: None,
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rg32Float,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        };
-        let order = wgpu::util::TextureDataOrder::LayerMajor;
-        let texture =
-            self.device.create_texture_with_data(&self.queue, &descriptor, order, &tables.bytes);
-        Bound::Texture(texture.create_view(&Default::default()))
+        let size = [tables.width, tables.height, 0];
+        Bound::Texture(self.view(size, wgpu::TextureFormat::Rg32Float, &tables.bytes))
     }
 
     /// Whether it filters textures of 32-bit floats.
@@ -76,37 +63,41 @@ impl Gpu {
         self.device.features().contains(wgpu::Features::FLOAT32_FILTERABLE)
     }
 
-    /// Texels of one channel, read by a linear filter that clamps at the edges; no depth is of a
-    /// texture in two dimensions.
+    /// Texels of one channel, read by a linear filter that clamps at the edges.
     pub fn filtered(&self, size: [u32; 3], half: bool, texels: &[u8]) -> Bound {
-        let descriptor = wgpu::TextureDescriptor {
-            label: None,
-            size: wgpu::Extent3d {
-                width: size[0],
-                height: size[1],
-                depth_or_array_layers: size[2].max(1),
-            },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: match size[2] {
-                0 => wgpu::TextureDimension::D2,
-                _ => wgpu::TextureDimension::D3,
-            },
-            format: match half {
-                true => wgpu::TextureFormat::R16Float,
-                false => wgpu::TextureFormat::R32Float,
-            },
-            usage: wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        };
-        let order = wgpu::util::TextureDataOrder::LayerMajor;
-        let texture = self.device.create_texture_with_data(&self.queue, &descriptor, order, texels);
+        use wgpu::TextureFormat::{R16Float, R32Float};
         let sampler = self.device.create_sampler(&wgpu::SamplerDescriptor {
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
             ..Default::default()
         });
-        Bound::Filtered(texture.create_view(&Default::default()), sampler)
+        let format = if half { R16Float } else { R32Float };
+        Bound::Filtered(self.view(size, format, texels), sampler)
+    }
+
+    /// A texture of these texels; no depth is of one in two dimensions.
+    fn view(
+        &self,
+        [width, height, depth]: [u32; 3],
+        format: wgpu::TextureFormat,
+        texels: &[u8],
+    ) -> wgpu::TextureView {
+        let descriptor = wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: depth.max(1) },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: match depth {
+                0 => wgpu::TextureDimension::D2,
+                _ => wgpu::TextureDimension::D3,
+            },
+            format,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        };
+        let order = wgpu::util::TextureDataOrder::LayerMajor;
+        let texture = self.device.create_texture_with_data(&self.queue, &descriptor, order, texels);
+        texture.create_view(&Default::default())
     }
 
     /// A program with its entry point.
@@ -138,28 +129,32 @@ impl Gpu {
         let input = self.filled(input, BufferUsages::STORAGE);
         let uniform = uniform.map(|bytes| self.filled(bytes, BufferUsages::UNIFORM));
         let sized = |usage| {
-            let size = output as u64;
-            let mapped_at_creation = false;
-            let descriptor =
-                wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation };
-            self.device.create_buffer(&descriptor)
+            let (size, mapped_at_creation) = (output as u64, false);
+            let label = None;
+            self.device.create_buffer(&wgpu::BufferDescriptor {
+                label,
+                size,
+                usage,
+                mapped_at_creation,
+            })
         };
         let written = sized(BufferUsages::STORAGE | BufferUsages::COPY_SRC);
         let read = sized(BufferUsages::MAP_READ | BufferUsages::COPY_DST);
 
-        let tables = match &program.tables {
-            Bound::Buffer(buffer) => buffer.as_entire_binding(),
-            Bound::Texture(view) | Bound::Filtered(view, _) => BindingResource::TextureView(view),
+        let (tables, sampler) = match &program.tables {
+            Bound::Buffer(buffer) => (buffer.as_entire_binding(), None),
+            Bound::Texture(view) => (BindingResource::TextureView(view), None),
+            Bound::Filtered(view, sampler) => {
+                (BindingResource::TextureView(view), Some(BindingResource::Sampler(sampler)))
+            }
         };
-        let sampler = match &program.tables {
-            Bound::Filtered(_, sampler) => Some(BindingResource::Sampler(sampler)),
-            _ => None,
-        };
-        let resources = [Some(tables), Some(input.as_entire_binding())].into_iter().chain([
+        let resources = [
+            Some(tables),
+            Some(input.as_entire_binding()),
             Some(written.as_entire_binding()),
             uniform.as_ref().map(|buffer| buffer.as_entire_binding()),
             sampler,
-        ]);
+        ];
         let entries: Vec<BindGroupEntry<'_>> = (0..)
             .zip(resources)
             .filter_map(|(binding, resource)| Some(BindGroupEntry { binding, resource: resource? }))

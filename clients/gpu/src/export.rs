@@ -40,22 +40,25 @@ impl Export {
         Self { module, sample, tables, description }
     }
 
-    /// The shapes in it.
-    pub fn gammas(&self) -> Vec<f64> {
+    /// The shapes in it, by γ, with what functions call each.
+    fn shapes(&self) -> impl Iterator<Item = (f64, u32)> {
         let shapes = self.description["shapes"].as_object().expect("shapes");
-        let mut gammas: Vec<f64> =
-            shapes.keys().map(|gamma| gamma.parse().expect("a number")).collect();
+        shapes.iter().map(|(gamma, shape)| {
+            let offset = shape["offset"].as_u64().expect("an offset") as u32;
+            (gamma.parse().expect("a number"), offset)
+        })
+    }
+
+    /// The shapes in it, ascending.
+    pub fn gammas(&self) -> Vec<f64> {
+        let mut gammas: Vec<f64> = self.shapes().map(|(gamma, _)| gamma).collect();
         gammas.sort_by(f64::total_cmp);
         gammas
     }
 
     /// What functions call a shape.
     pub fn offset(&self, gamma: f64) -> u32 {
-        let shapes = self.description["shapes"].as_object().expect("shapes");
-        let (_, shape) = shapes
-            .iter()
-            .find(|(name, _)| name.parse() == Ok(gamma))
-            .unwrap_or_else(|| panic!("gamma {gamma} was not exported"));
-        shape["offset"].as_u64().expect("an offset") as u32
+        let found = self.shapes().find(|(other, _)| *other == gamma);
+        found.unwrap_or_else(|| panic!("gamma {gamma} was not exported")).1
     }
 }

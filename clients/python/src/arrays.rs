@@ -18,7 +18,6 @@ use rayon::prelude::*;
 /// What Python passes, and what it is given back.
 pub(crate) type Any<'py> = Bound<'py, PyAny>;
 
-/// A number of an array.
 pub(crate) trait Number: Element + Copy + Default + Into<f64> + Send + Sync {}
 
 impl<T: Element + Copy + Default + Into<f64> + Send + Sync> Number for T {}
@@ -105,7 +104,6 @@ impl<'py, T: Number, const N: usize> Input<'py, T, N> {
         Ok(Self { name, array: array.readonly(), batch: batch.to_vec(), strides })
     }
 
-    /// Its name and its shape.
     fn shape(&self) -> (&'static str, &[usize]) {
         (self.name, &self.batch)
     }

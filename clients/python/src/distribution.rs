@@ -9,11 +9,9 @@ use pyo3::prelude::*;
 use crate::arrays::{Any, Cost, Input, Number, each, each2, map, map2};
 use crate::words::{self, refused};
 
-/// A lobe in one of the precisions.
+/// A lobe by tables, in single precision, or by the model, in double precision.
 pub(crate) enum Kind {
-    /// By tables, in single precision.
     Tables(Lobe),
-    /// By the model, in double precision.
     Exact(Model),
 }
 
@@ -189,7 +187,6 @@ impl<'py, T: Number> View<'py, T> {
     }
 }
 
-/// The error for cosines where they do not suffice.
 pub(crate) fn azimuth_matters() -> PyErr {
     refused(
         "the lobe is not round, so that its albedo depends on the azimuth of the view: give v as \

@@ -277,7 +277,6 @@ pub(crate) fn options_of(albedo: Option<bool>, tabulate_ggx: bool, target: Targe
     Options { tabulate_ggx, albedo, quality: target.quality(), ..Options::default() }
 }
 
-/// The plan of all shapes.
 fn general(albedo: Option<bool>) -> Plan {
     let mut plan = Plan::general();
     if albedo == Some(false) {

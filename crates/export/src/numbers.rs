@@ -15,7 +15,7 @@ pub(crate) fn as_typed(gamma: f64) -> String {
     shortest(gamma.to_string(), format!("{gamma:e}"))
 }
 
-/// An error for people.
+/// An error to two digits.
 pub(super) fn error(error: Option<f64>) -> String {
     error.map_or_else(|| "not stated".into(), |error| format!("{error:.1e}"))
 }

@@ -72,9 +72,7 @@ impl Shape {
             numerics: provenance.numerics,
         })
     }
-}
 
-impl Shape {
     /// The largest of what is said of the albedos under both forms of masking.
     pub(super) fn worst_albedo(&self, of: impl Fn(&AlbedoTable) -> Option<f64>) -> Option<f64> {
         self.albedos.iter().filter_map(of).reduce(f64::max)

@@ -72,8 +72,8 @@ struct Errors {
     average: f64,
 }
 
-/// Adds data and description of all shapes to the files of functions; the description, which knows
-/// the others by their checksums, is the last to take its place.
+/// Adds data and description of all shapes to the files of functions; the description, which has
+/// the checksums of the others, is the last to be written.
 pub(super) fn append_files(shapes: &[Shape], files: &mut Vec<ExportFile>) {
     let mut pairs = Vec::new();
     let entry = |shape: &Shape| (as_typed(shape.gamma), append(shape, |_| true, &mut pairs));

@@ -108,10 +108,8 @@ impl Checks {
             if directional { (PER_TEXEL, POINTS) } else { (PER_AVERAGE, AVERAGES) };
         let count = (per * filter.texels).clamp(fewest, most);
         let mut at = Vec::new();
-        let slices = match axes.iter().find(|axis| axis.is_of_shapes()) {
-            Some(axis) => slices(axis),
-            None => vec![f64::NAN],
-        };
+        let shapes = axes.iter().find(|axis| axis.is_of_shapes());
+        let slices = shapes.map_or(vec![f64::NAN], slices);
         // Averages are dense without them.
         let longest = axes.iter().map(TexelAxis::len).max().unwrap_or(1);
         let edges =
@@ -122,9 +120,7 @@ impl Checks {
             // Edges, and their ends.
             for edge in 0..=edges {
                 let along = edge as f64 / edges as f64;
-                for corner in 0..4 {
-                    at.push(edge_point(axes, slice, along, corner));
-                }
+                at.extend((0..4).map(|corner| edge_point(axes, slice, along, corner)));
             }
         }
         let (mut places, mut taps) = (Vec::new(), Vec::new());
@@ -154,13 +150,12 @@ impl Checks {
         let planes: Vec<Vec<f64>> = (0..texture.spec.channels.len())
             .map(|channel| texture.plane(channel).map(f64::from).collect())
             .collect();
-        let quantities = quantities(&texture.spec.channels);
-        let mut found: Vec<Deviation> = Vec::new();
-        for (quantity, of) in quantities {
-            let (mut worst, mut at, mut coarse, mut sum) = (-1.0, None, 0.0_f64, 0.0);
+        let counted: Vec<_> =
+            self.points.iter().filter(|(known, _)| counts(&known.place)).collect();
+        let deviation = |(quantity, of): (&'static str, Reading)| {
+            let (mut largest, mut at, mut coarse, mut sum) = (-1.0, None, 0.0_f64, 0.0);
             let (mut share, mut shares) = (0.0_f64, 0.0);
-            let mut count = 0;
-            for (known, tap) in self.points.iter().filter(|(known, _)| counts(&known.place)) {
+            for (known, tap) in &counted {
                 let error = |read: fn(&Filter, &[f64], Tap) -> f64| {
                     let read = |channel: usize| read(&self.filter, &planes[channel], *tap);
                     let (got, want) = of(&read, known.truth);
@@ -171,18 +166,15 @@ impl Checks {
                 sum += fine * fine;
                 share = share.max(fine / want);
                 shares += (fine / want).powi(2);
-                count += 1;
-                if fine > worst {
-                    (worst, at) = (fine, Some(known.place));
+                if fine > largest {
+                    (largest, at) = (fine, Some(known.place));
                 }
             }
-            if let Some(at) = at {
-                let [rms, mean] = [sum, shares].map(|sum| (sum / f64::from(count)).sqrt());
-                let relative = [share, mean];
-                found.push(Deviation { quantity, largest: worst, at, rms, coarse, relative });
-            }
-        }
-        found
+            let [rms, mean] = [sum, shares].map(|sum| (sum / counted.len() as f64).sqrt());
+            let relative = [share, mean];
+            Some(Deviation { quantity, largest, at: at?, rms, coarse, relative })
+        };
+        quantities(&texture.spec.channels).into_iter().filter_map(deviation).collect()
     }
 }
 
@@ -192,7 +184,6 @@ type Reading = Box<dyn Fn(&dyn Fn(usize) -> f64, Truth) -> (f64, f64)>;
 /// The quantities that channels hold, as a shader forms them.
 fn quantities(channels: &[Channel]) -> Vec<(&'static str, Reading)> {
     let mut all: Vec<(&'static str, Reading)> = Vec::new();
-    let find = |channel| channels.iter().position(|&other| other == channel);
     for (i, &channel) in channels.iter().enumerate() {
         match channel {
             Channel::Empty | Channel::Excess => {}
@@ -201,15 +192,16 @@ fn quantities(channels: &[Channel]) -> Vec<(&'static str, Reading)> {
             _ => all.push((channel.name(), Box::new(move |read, t| (read(i), channel.of(t))))),
         }
     }
-    if let (Some(e), Some(excess)) = (find(Channel::E), find(Channel::Excess)) {
+    let find = |channel| channels.iter().position(|&other| other == channel);
+    let [e, excess, scale, bias] =
+        [Channel::E, Channel::Excess, Channel::Scale, Channel::Bias].map(find);
+    if let (Some(e), Some(excess)) = (e, excess) {
         let bias = move |read: &dyn Fn(usize) -> f64, t: Truth| read(excess) + read(e) * t.mirror;
         all.push(("bias", Box::new(move |read, t| (bias(read, t), t.bias))));
         all.push(("scale", Box::new(move |read, t| (read(e) - bias(read, t), t.e - t.bias))));
     }
     // Engines read E as the sum of both.
-    if let (Some(scale), Some(bias), None) =
-        (find(Channel::Scale), find(Channel::Bias), find(Channel::E))
-    {
+    if let (Some(scale), Some(bias), None) = (scale, bias, e) {
         all.push(("e", Box::new(move |read, t| (read(scale) + read(bias), t.e))));
     }
     all

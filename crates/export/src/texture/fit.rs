@@ -16,8 +16,8 @@ const STEPS: usize = 120;
 const ENOUGH: f64 = 1e-18;
 /// Weight of points for which nothing is promised, so that texels which only they read are sound.
 const LOOSE: f64 = 1e-4;
-/// Parts of the points that are summed each by a thread, and then in their order, so that sums do
-/// not depend on who was first; and the fewest points of a part.
+/// Parts of the points that are summed each by a thread, and then in their order, so that sums are
+/// the same for any number of threads; and the fewest points of a part.
 const PARTS: usize = 16;
 const FEWEST: usize = 1024;
 
@@ -33,7 +33,6 @@ pub(super) struct Tap {
 pub(super) struct Filter {
     /// How far apart neighbours along each axis are; 0 for axes that are not there.
     strides: [usize; AXES],
-    /// How many texels there are.
     pub(super) texels: usize,
 }
 
@@ -78,7 +77,6 @@ impl Filter {
         })
     }
 
-    /// What it reads of these values.
     pub(super) fn read(&self, values: &[f64], tap: Tap) -> f64 {
         self.corners(tap).map(|(texel, weight)| weight * values[texel]).sum()
     }
@@ -119,9 +117,7 @@ impl Filter {
 /// A point that a texture is fitted to.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Target {
-    /// What is read there.
     pub(super) tap: Tap,
-    /// Whether anything is promised there.
     pub(super) promised: bool,
 }
 

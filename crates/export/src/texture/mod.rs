@@ -34,9 +34,9 @@ use axis::{AXES, coordinates};
 use fit::{Filter, Target, fit};
 use truth::truths;
 
-/// The fewest and the most texels along an axis, and the most of a texture.
+/// The fewest and the most texels along an axis.
 pub const SIZES: [usize; 2] = [4, 4096];
-/// See [`SIZES`].
+/// The most texels of a texture.
 pub const MOST_TEXELS: usize = 1 << 24;
 /// Textures of more texels than this hold the values at the texels. Errors fall with the square of
 /// their number along an axis, from 5.2e-3 for γ = ∞ in 32 × 32 texels, and a fit, which takes
@@ -295,43 +295,36 @@ pub fn check(shapes: Shapes, sigma_max: f64, size: &[usize]) -> Result<(), Strin
         Shapes::One(gamma) => (gamma, 2, "SxT, as 32x32"),
         Shapes::DownTo(gamma) => (gamma, 3, "GxSxT, as 32x64x64"),
     };
-    if !(gamma >= GAMMA_MIN) {
-        return Err(format!(
+    let [fewest, most] = SIZES;
+    Err(if !(gamma >= GAMMA_MIN) {
+        format!(
             "gamma = {gamma} is below {GAMMA_MIN}, the smallest shape that textures cover; raise it"
-        ));
-    }
-    if matches!(shapes, Shapes::DownTo(f64::INFINITY)) {
-        return Err("a range of shapes goes from infinity down: give its smallest gamma, or ask \
-                    for the one shape gamma = inf"
-            .into());
-    }
-    if !(sigma_max > 0.0 && sigma_max <= SIGMA_MAX) {
-        return Err(format!(
-            "sigma-max = {sigma_max} must lie in (0, {SIGMA_MAX}]; 1 is what engines use"
-        ));
-    }
-    if sigma_max < LEAST_SIGMA_MAX {
-        return Err(format!(
+        )
+    } else if matches!(shapes, Shapes::DownTo(f64::INFINITY)) {
+        "a range of shapes goes from infinity down: give its smallest gamma, or ask for the one \
+         shape gamma = inf"
+            .into()
+    } else if !(sigma_max > 0.0 && sigma_max <= SIGMA_MAX) {
+        format!("sigma-max = {sigma_max} must lie in (0, {SIGMA_MAX}]; 1 is what engines use")
+    } else if sigma_max < LEAST_SIGMA_MAX {
+        format!(
             "sigma-max = {sigma_max} is below {LEAST_SIGMA_MAX}: all of the texture would be a \
              mirror's; raise it"
-        ));
-    }
-    if matches!(shapes, Shapes::DownTo(gamma) if gamma > MOST_GAMMA_MIN) {
-        return Err(format!(
+        )
+    } else if matches!(shapes, Shapes::DownTo(gamma) if gamma > MOST_GAMMA_MIN) {
+        format!(
             "gamma-min = {gamma} is above {MOST_GAMMA_MIN}: all of the volume would be Beckmann's; \
              ask for the one shape gamma = inf"
-        ));
-    }
-    if size.len() != axes {
-        return Err(format!("a texture of these shapes has {axes} sizes: {form}"));
-    }
-    let [fewest, most] = SIZES;
-    if let Some(n) = size.iter().find(|n| !(fewest..=most).contains(*n)) {
-        return Err(format!("a size of {n} must lie in [{fewest}, {most}]; give {form}"));
-    }
-    let texels: usize = size.iter().product();
-    if texels > MOST_TEXELS {
-        return Err(format!("{texels} texels are more than {MOST_TEXELS}; name smaller sizes"));
-    }
-    Ok(())
+        )
+    } else if size.len() != axes {
+        format!("a texture of these shapes has {axes} sizes: {form}")
+    } else if let Some(n) = size.iter().find(|n| !(fewest..=most).contains(*n)) {
+        format!("a size of {n} must lie in [{fewest}, {most}]; give {form}")
+    } else if let texels = size.iter().product::<usize>()
+        && texels > MOST_TEXELS
+    {
+        format!("{texels} texels are more than {MOST_TEXELS}; name smaller sizes")
+    } else {
+        return Ok(());
+    })
 }

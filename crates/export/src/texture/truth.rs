@@ -54,7 +54,6 @@ impl Channel {
         }
     }
 
-    /// Its value.
     pub(super) fn of(self, truth: Truth) -> f64 {
         match self {
             Self::E => truth.e,

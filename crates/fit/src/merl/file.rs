@@ -13,14 +13,12 @@ use super::{HalfDifference, LIMIT_DEGREES};
 
 /// Cells along θ_h, θ_d and φ_d, the last fastest.
 pub(super) const DIMENSIONS: [usize; 3] = [90, 90, 180];
-/// Cells of each channel.
 pub(super) const CELLS: usize = DIMENSIONS[0] * DIMENSIONS[1] * DIMENSIONS[2];
 /// Bytes of a file: three 32-bit dimensions, then the channels red, green and blue in doubles.
 pub const BYTES: usize = HEADER + 3 * 8 * CELLS;
 const HEADER: usize = 3 * 4;
 /// What a number of each channel is multiplied with to be a reflectance in 1/sr.
 const SCALES: [f64; 3] = [1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0];
-/// The names of the channels.
 pub(super) const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 
 /// The place of a value in its cell, as a share of it along each axis.
@@ -84,7 +82,6 @@ pub enum MerlError {
 
 microfacet_core::debug_in_words!(MerlError);
 
-/// Dimensions in words.
 fn by<T: Display>([h, d, p]: &[T; 3]) -> String {
     format!("{h} x {d} x {p}")
 }

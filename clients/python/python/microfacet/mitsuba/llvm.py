@@ -79,7 +79,7 @@ def _instead() -> str:
 
 
 def prepare() -> None:
-    """Tells Dr.Jit which library to take, if it is not loaded yet and nobody else has told it.
+    """Tells Dr.Jit which library to take, if it is not loaded yet and has not been told.
 
     Raises ``ImportError`` where the variable names a version that does not work.
     """

@@ -13,16 +13,14 @@ const GAMMA: f32 = 2.2;
 
 /// OpenEXR in single precision.
 pub(super) fn open_exr(textures: &[Texture]) -> Result<Vec<ExportFile>, String> {
-    let texture = &textures[0];
-    let contents = exr(texture, None)?;
-    Ok(vec![ExportFile { name: format!("{}.exr", texture.spec.name), contents }])
+    let name = format!("{}.exr", textures[0].spec.name);
+    Ok(vec![ExportFile::new(name, exr(&textures[0], None)?)])
 }
 
 /// Bevy: KTX 2 with two halves a texel.
 pub(super) fn bevy(textures: &[Texture]) -> Result<Vec<ExportFile>, String> {
     let (texture, _) = textures[0].rounded();
-    let contents = ktx2::encode(&texture, None);
-    Ok(vec![ExportFile { name: "dfg.ktx2".into(), contents }])
+    Ok(vec![ExportFile::new("dfg.ktx2", ktx2::encode(&texture, None))])
 }
 
 /// glTF: eight bits a channel, linear.
@@ -58,5 +56,5 @@ fn eight_bits(x: f32) -> u8 {
 fn png(name: &str, image: DynamicImage) -> Result<Vec<ExportFile>, String> {
     let mut out = Cursor::new(Vec::new());
     image.write_to(&mut out, ImageFormat::Png).map_err(|why| why.to_string())?;
-    Ok(vec![ExportFile { name: name.into(), contents: out.into_inner() }])
+    Ok(vec![ExportFile::new(name, out.into_inner())])
 }

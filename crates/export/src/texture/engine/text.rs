@@ -8,10 +8,6 @@ use super::Texture;
 use crate::ExportFile;
 use crate::numbers::{as_typed, lines};
 
-fn file(name: &str, text: String) -> ExportFile {
-    ExportFile { name: name.into(), contents: text.into_bytes() }
-}
-
 /// What a texture is of, in a line.
 fn provenance(texture: &Texture) -> String {
     let spec = &texture.spec;
@@ -40,7 +36,7 @@ pub(super) fn cycles(textures: &[Texture]) -> Result<Vec<ExportFile>, String> {
         }
         text += "};\n\n";
     }
-    Ok(vec![file("shader.tables", text)])
+    Ok(vec![ExportFile::new("shader.tables", text)])
 }
 
 /// OpenPBR: bodies of arrays of sixteen-bit integers.
@@ -53,7 +49,7 @@ pub(super) fn openpbr(textures: &[Texture]) -> Result<Vec<ExportFile>, String> {
             provenance(texture),
             numbers.join(", ")
         );
-        file(&format!("openpbr_{}_energy_complement_data.h", texture.spec.name), text)
+        ExportFile::new(format!("openpbr_{}_energy_complement_data.h", texture.spec.name), text)
     };
     Ok(textures.iter().map(body).collect())
 }
@@ -72,7 +68,7 @@ pub(super) fn osl(textures: &[Texture]) -> Result<Vec<ExportFile>, String> {
         let _ = writeln!(text, "       {row}");
     }
     text += "    }};\n    return energy;\n}\n\n}  // namespace spi\n\nBSDL_LEAVE_NAMESPACE\n";
-    Ok(vec![file("microfacet_tools_luts.h", text)])
+    Ok(vec![ExportFile::new("microfacet_tools_luts.h", text)])
 }
 
 /// The bits of sixteen-bit floats.
@@ -89,15 +85,12 @@ pub(super) fn filament(textures: &[Texture]) -> Result<Vec<ExportFile>, String> 
     for line in all.chunks(12) {
         let _ = writeln!(text, "{},", line.join(", "));
     }
-    Ok(vec![file("dfg.inc", text)])
+    Ok(vec![ExportFile::new("dfg.inc", text)])
 }
 
 /// three.js: an array, to replace that in both files.
 pub(super) fn three(textures: &[Texture]) -> Result<Vec<ExportFile>, String> {
-    let numbers = lines(bits(&textures[0]));
-    let provenance = provenance(&textures[0]);
-    Ok(vec![file(
-        "DFGLUTData.js",
-        format!("// {provenance}\nconst DATA = new Uint16Array( [\n{numbers}\n] );\n"),
-    )])
+    let (provenance, numbers) = (provenance(&textures[0]), lines(bits(&textures[0])));
+    let text = format!("// {provenance}\nconst DATA = new Uint16Array( [\n{numbers}\n] );\n");
+    Ok(vec![ExportFile::new("DFGLUTData.js", text)])
 }

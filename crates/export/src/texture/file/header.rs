@@ -26,15 +26,11 @@ pub(super) fn encode(made: &Made) -> String {
         let _ = writeln!(text, "   Largest error of {}: {:.1e}.", error.quantity, error.stated());
     }
     for axis in &spec.axes {
-        match axis.along {
-            Along::Roughness { largest } => {
-                let _ = writeln!(text, "   sigma in [0, {largest}].");
-            }
-            Along::Shape { smallest } => {
-                let _ = writeln!(text, "   gamma in [{smallest}, inf].");
-            }
-            _ => {}
-        }
+        let _ = match axis.along {
+            Along::Roughness { largest } => writeln!(text, "   sigma in [0, {largest}]."),
+            Along::Shape { smallest } => writeln!(text, "   gamma in [{smallest}, inf]."),
+            _ => Ok(()),
+        };
     }
     let names: Vec<&str> = spec.channels.iter().map(|channel| channel.name()).collect();
     let _ = writeln!(
@@ -64,39 +60,30 @@ pub(super) fn encode(made: &Made) -> String {
 fn function(made: &Made, channels: usize, guard: &str) -> String {
     let spec = &made.texture.spec;
     let name = &spec.name;
-    let mut arguments = Vec::new();
+    let number = |x| Dialect::C.number(x);
+    let (mut arguments, mut clamps) = (Vec::new(), String::new());
     let (mut coordinates, mut counts) = (Vec::new(), Vec::new());
     for axis in &spec.axes {
-        counts.push(axis.len().to_string());
-        let argument = match axis.along {
-            Along::Shape { .. } => "gamma",
-            Along::Roughness { .. } | Along::LinearRoughness => "sigma",
-            Along::View(_) | Along::Cosine { .. } | Along::RootCosine => "mu",
+        let (argument, least, most) = match axis.along {
+            Along::Shape { smallest } => ("gamma", smallest, "INFINITY".into()),
+            Along::Roughness { largest } => ("sigma", 0.0, number(largest)),
+            Along::LinearRoughness => ("sigma", 0.0, number(1.0)),
+            Along::View(_) | Along::Cosine { .. } | Along::RootCosine => {
+                ("mu", spec.least_cos, number(1.0))
+            }
         };
-        let coordinate = Dialect::C.coordinate(axis.along, spec.gamma);
+        let least = number(least);
+        clamps += &format!("    {argument} = fminf(fmaxf({argument}, {least}), {most});\n");
         arguments.push(format!("float {argument}"));
-        coordinates.push(coordinate);
+        coordinates.push(Dialect::C.coordinate(axis.along, spec.gamma));
+        counts.push(axis.len().to_string());
     }
     let axes = counts.len();
-    let clamp = |x: &str, least: f64, most: &str| {
-        format!("    {x} = fminf(fmaxf({x}, {}), {most});\n", Dialect::C.number(least))
-    };
-    let one = |along| match along {
-        Along::Shape { smallest } => clamp("gamma", smallest, "INFINITY"),
-        Along::Roughness { largest } => clamp("sigma", 0.0, &Dialect::C.number(largest)),
-        Along::LinearRoughness => clamp("sigma", 0.0, "1.0f"),
-        Along::View(_) | Along::Cosine { .. } | Along::RootCosine => {
-            clamp("mu", spec.least_cos, "1.0f")
-        }
-    };
-    let clamps: String = spec.axes.iter().map(|axis| one(axis.along)).collect();
-    let (parameter, result) = if channels > 1 {
-        (format!(", float *out /* {channels} */"), String::new())
+    let (kind, parameter, local, result) = if channels > 1 {
+        ("void", format!(", float *out /* {channels} */"), "", "")
     } else {
-        (String::new(), "    return out[0];\n".into())
+        ("float", String::new(), "    float out[1];\n", "    return out[0];\n")
     };
-    let kind = if channels > 1 { "void" } else { "float" };
-    let local = if channels > 1 { String::new() } else { "    float out[1];\n".into() };
     let meaning = match (&spec.channels[..], spec.is_directional()) {
         ([Channel::Lost], _) => "1 - E",
         ([_], _) => "E",

@@ -7,7 +7,6 @@ use ktx2::{Format, Header, Index, LevelIndex};
 use super::{bytes, extent, is_volume};
 use crate::texture::Texture;
 
-/// The key of the description.
 const KEY: &str = "microfacet";
 
 pub(in crate::texture) fn encode(texture: &Texture, description: Option<&str>) -> Vec<u8> {

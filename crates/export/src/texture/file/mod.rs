@@ -99,12 +99,10 @@ fn extent(texture: &Texture) -> [usize; 3] {
     [(); 3].map(|()| fastest_first.next().unwrap_or(1))
 }
 
-/// Whether it is a volume.
 fn is_volume(texture: &Texture) -> bool {
     texture.spec.axes.len() == 3
 }
 
-/// Its values as bytes, the least significant first.
 fn bytes(texture: &Texture) -> Vec<u8> {
     let values = texture.values.iter();
     match texture.half {
