@@ -1,49 +1,52 @@
-//! Damaged scenes: every one must be read or refused, without a panic.
+//! Damaged scenes: every one must be read or refused, without a panic and soon.
 
-use std::fs;
 #[cfg(target_os = "linux")]
-use std::fs::File;
+use std::fs::{self, File};
 use std::time::{Duration, Instant};
 
 use proptest::prelude::*;
 
-use microfacet_baker::scene::Scene;
+use microfacet_baker::scene::{Scene, SceneError};
 
-use crate::{Folder, assert_not_understood, assert_refused, assert_warned, load, names};
+use crate::{
+    Folder, assert_not_understood, assert_refused, assert_says, assert_warned, isotropic, load,
+    names,
+};
 
 const SCENES: [(&str, &str); 5] = [
     (
         "a.toml",
-        "[[material]]\nname = \"a\"\nsigma = [{ min = 0.1, max = 0.2 }, 0.3]\ngamma = \"inf\"\n\
-         fresnel = { conductor = { eta = [0.2, 0.9, 1.1], k = [3.9, 2.4, 2.2] } }\nmasking = \"uncorrelated\"\n",
+        "[[material]]\nname = 'a'\nsigma = [{ min = 0.1, max = 0.2 }, 0.3]\ngamma = 'inf'\n\
+         fresnel = { conductor = { eta = [0.2, 0.9, 1.1], k = [3.9, 2.4, 2.2] } }\n\
+         masking = 'uncorrelated'\n",
     ),
     (
         "a.pbrt",
-        "Texture \"t\" \"float\" \"scale\" \"float scale\" 0.5 # half\nAttributeBegin\n\
-         Material \"coatedconductor\" \"texture interface.roughness\" [ \"t\" ] \"rgb conductor.eta\" [ 1 2 3 ]\n\
-         Shape \"trianglemesh\" \"point3 P\" [ 0 0 0  1 0 0 ]\nAttributeEnd\nInclude \"b.pbrt\"\n",
+        "Texture 't' 'float' 'scale' 'float scale' 0.5 # half\nAttributeBegin\n\
+         Material 'coatedconductor' 'texture interface.roughness' [ 't' ] 'rgb conductor.eta' [ 1 2 3 ]\n\
+         Shape 'trianglemesh' 'point3 P' [ 0 0 0  1 0 0 ]\nAttributeEnd\nInclude 'b.pbrt'\n",
     ),
     (
         "a.xml",
-        "<scene version=\"3.0.0\"><default name=\"r\" value=\"0.3\"/><include filename=\"b.xml\"/>\
-         <bsdf type=\"twosided\" id=\"a\"><bsdf type=\"principled\"><float name=\"roughness\" value=\"$r\"/>\
-         <ref name=\"anisotropic\" id=\"t\"/></bsdf></bsdf><texture type=\"checkerboard\" id=\"t\"/>\
-         <shape type=\"cube\"><ref id=\"a\"/></shape></scene>",
+        "<scene version='3.0.0'><default name='r' value='0.3'/><include filename='b.xml'/>\
+         <bsdf type='twosided' id='a'><bsdf type='principled'><float name='roughness' value='$r'/>\
+         <ref name='anisotropic' id='t'/></bsdf></bsdf><texture type='checkerboard' id='t'/>\
+         <shape type='cube'><ref id='a'/></shape></scene>",
     ),
     (
         "a.gltf",
-        "{\"asset\": {\"version\": \"2.0\"}, \"materials\": [{\"pbrMetallicRoughness\": {\"roughnessFactor\": 0.5, \
-         \"metallicRoughnessTexture\": {\"index\": 0}}, \"extensions\": {\"KHR_materials_clearcoat\": \
-         {\"clearcoatFactor\": 1}}}], \"textures\": [{\"source\": 0}], \"images\": [{\"bufferView\": 0}], \
-         \"bufferViews\": [{\"buffer\": 0, \"byteOffset\": 3, \"byteLength\": 9}], \"buffers\": [{\"uri\": \
-         \"data:x;base64,AAAA\"}]}",
+        "{'asset': {'version': '2.0'}, 'materials': [{'pbrMetallicRoughness': {'roughnessFactor': 0.5, \
+         'metallicRoughnessTexture': {'index': 0}}, 'extensions': {'KHR_materials_clearcoat': \
+         {'clearcoatFactor': 1}}}], 'textures': [{'source': 0}], 'images': [{'bufferView': 0}], \
+         'bufferViews': [{'buffer': 0, 'byteOffset': 3, 'byteLength': 9}], 'buffers': [{'uri': \
+         'data:x;base64,AAAA'}]}",
     ),
     (
         "a.mtlx",
-        "<materialx version=\"1.39\"><nodegraph name=\"G\"><mix name=\"m\"><input name=\"fg\" value=\"0.3\"/>\
-         <input name=\"mix\" interfacename=\"x\"/></mix><input name=\"x\" value=\"0.5, 1\"/><output name=\"o\" nodename=\"m\"/>\
-         </nodegraph><standard_surface name=\"s\" type=\"surfaceshader\"><input name=\"specular_roughness\" \
-         nodegraph=\"G\" output=\"o\"/></standard_surface></materialx>",
+        "<materialx version='1.39'><nodegraph name='G'><mix name='m'><input name='fg' value='0.3'/>\
+         <input name='mix' interfacename='x'/></mix><input name='x' value='0.5, 1'/>\
+         <output name='o' nodename='m'/></nodegraph><standard_surface name='s' type='surfaceshader'>\
+         <input name='specular_roughness' nodegraph='G' output='o'/></standard_surface></materialx>",
     ),
 ];
 
@@ -71,41 +74,30 @@ proptest! {
     }
 }
 
-#[test]
-fn an_include_of_a_folder_is_warned_of_at_its_place() {
-    for include in ["", "."] {
-        let text = format!("WorldBegin\nInclude \"{include}\"\nMaterial \"conductor\"\n");
-        let scene = load("a.pbrt", &text);
-        assert_warned(&scene, "a.pbrt:2:1", &["is a folder"]);
-        assert_eq!(scene.materials.len(), 1);
-    }
-}
-
-/// The message that `name` is refused with, which must come soon.
+/// What a file gives, which must come soon.
 #[track_caller]
-fn soon_refused(folder: &Folder, name: &str) -> String {
+fn soon(folder: &Folder, name: &str) -> Result<Scene, SceneError> {
     let start = Instant::now();
-    let message = folder.load(name).unwrap_err().to_string();
-    assert!(start.elapsed() < Duration::from_secs(60), "{:?}: {message}", start.elapsed());
-    message
+    let read = folder.load(name);
+    assert!(start.elapsed() < Duration::from_secs(60), "{:?}: {read:?}", start.elapsed());
+    read
 }
 
 /// The scene in one file, which must be read soon.
 #[track_caller]
 fn soon_loaded(name: &str, text: &str) -> Scene {
-    let start = Instant::now();
-    let scene = load(name, text);
-    assert!(start.elapsed() < Duration::from_secs(60), "{:?}", start.elapsed());
-    scene
+    soon(&Folder::new(&[(name, text)]), name).unwrap()
 }
 
 /// Checks that the file is refused soon, with a message that holds all of `parts`.
 #[track_caller]
-fn assert_soon_refused(name: &str, text: &str, parts: &[&str]) {
-    let message = soon_refused(&Folder::new(&[(name, text)]), name);
-    for part in parts {
-        assert!(message.contains(part), "no {part:?} in {message}");
-    }
+fn assert_soon_refused(folder: &Folder, name: &str, parts: &[&str]) {
+    assert_says(&soon(folder, name).unwrap_err().to_string(), parts);
+}
+
+/// The text of many numbered parts.
+fn many(count: usize, part: impl Fn(usize) -> String) -> String {
+    (0..count).map(part).collect()
 }
 
 /// A folder with `odd`, which is a device, a FIFO or a file of 5 GB with nothing in it.
@@ -122,35 +114,22 @@ fn odd_files() -> Vec<(Folder, &'static str)> {
 
 #[test]
 #[cfg(target_os = "linux")]
-fn devices_fifos_and_files_without_end_are_refused_as_scenes() {
-    for (folder, what) in odd_files() {
-        for name in ["a.toml", "a.pbrt", "a.pbrt.gz", "a.xml", "a.gltf", "a.glb", "a.mtlx"] {
-            fs::rename(folder.path("odd"), folder.path(name)).unwrap();
-            let message = soon_refused(&folder, name);
-            assert!(message.contains(name) && message.contains(what), "{message}");
-            fs::rename(folder.path(name), folder.path("odd")).unwrap();
-        }
-    }
-}
-
-#[test]
-#[cfg(target_os = "linux")]
-fn devices_fifos_and_files_without_end_are_refused_within_scenes() {
-    let include = "odd";
+fn devices_fifos_and_files_without_end_are_refused() {
     let scenes = [
-        ("a.pbrt", format!("Include \"{include}\"\n")),
-        ("a.xml", format!("<scene><include filename=\"{include}\"/></scene>")),
-        ("a.mtlx", format!("<materialx><include href=\"{include}\"/></materialx>")),
-        (
-            "a.toml",
-            "[[material]]\nname = \"a\"\ndistribution = { measured = \"odd\" }\n".to_owned(),
-        ),
+        ("a.pbrt", "Include 'odd'\n"),
+        ("a.xml", "<scene><include filename='odd'/></scene>"),
+        ("a.mtlx", "<materialx><include href='odd'/></materialx>"),
+        ("a.toml", "[[material]]\nname = 'a'\ndistribution = { measured = 'odd' }\n"),
     ];
     for (folder, what) in odd_files() {
-        for (name, text) in &scenes {
-            fs::write(folder.path(name), text).unwrap();
-            let message = soon_refused(&folder, name);
-            assert!(message.contains("odd") && message.contains(what), "{message}");
+        for name in ["b.toml", "b.pbrt", "b.pbrt.gz", "b.xml", "b.gltf", "b.glb", "b.mtlx"] {
+            fs::rename(folder.path("odd"), folder.path(name)).unwrap();
+            assert_soon_refused(&folder, name, &[name, what]);
+            fs::rename(folder.path(name), folder.path("odd")).unwrap();
+        }
+        for (name, text) in scenes {
+            folder.write(name, text);
+            assert_soon_refused(&folder, name, &["odd", what]);
         }
     }
 }
@@ -158,120 +137,104 @@ fn devices_fifos_and_files_without_end_are_refused_within_scenes() {
 #[test]
 #[cfg(target_os = "linux")]
 fn devices_fifos_and_files_without_end_are_no_images() {
-    let image = "\"images\": [{\"uri\": \"odd\"}], \"textures\": [{\"source\": 0}]";
-    let view = "\"images\": [{\"bufferView\": 0}], \"textures\": [{\"source\": 0}], \
-                \"buffers\": [{\"uri\": \"odd\"}], \
-                \"bufferViews\": [{\"buffer\": 0, \"byteLength\": 5000000000}]";
     let gltf = |image: &str| {
         format!(
-            "{{\"asset\": {{\"version\": \"2.0\"}}, \"materials\": [{{\"pbrMetallicRoughness\": \
-             {{\"metallicRoughnessTexture\": {{\"index\": 0}}}}}}], {image}}}"
+            "{{'asset': {{'version': '2.0'}}, 'materials': [{{'pbrMetallicRoughness': \
+             {{'metallicRoughnessTexture': {{'index': 0}}}}}}], 'textures': [{{'source': 0}}], {image}}}"
         )
     };
-    let scenes = [
-        (
-            "a.pbrt",
-            "Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"odd\"\n\
-             Material \"conductor\" \"texture roughness\" \"t\"\n"
-                .to_owned(),
-        ),
-        ("a.gltf", gltf(image)),
-        ("b.gltf", gltf(view)),
-    ];
+    let view = "'images': [{'bufferView': 0}], 'buffers': [{'uri': 'odd'}], \
+                'bufferViews': [{'buffer': 0, 'byteLength': 5000000000}]";
+    let pbrt = "Texture 't' 'float' 'imagemap' 'string filename' 'odd'\n\
+                Material 'conductor' 'texture roughness' 't'\n";
     for (folder, _) in odd_files() {
-        for (name, text) in &scenes {
-            fs::write(folder.path(name), text).unwrap();
-            let start = Instant::now();
-            let scene = folder.load(name).unwrap();
-            assert!(start.elapsed() < Duration::from_secs(60));
-            assert!(scene.warnings[0].contains("assumed to cover [0, 1]"), "{:?}", scene.warnings);
+        for (name, text) in [
+            ("a.pbrt", pbrt.to_owned()),
+            ("a.gltf", gltf("'images': [{'uri': 'odd'}]")),
+            ("b.gltf", gltf(view)),
+        ] {
+            folder.write(name, text);
+            assert_says(&soon(&folder, name).unwrap().warnings[0], &["assumed to cover [0, 1]"]);
         }
+    }
+}
+
+#[test]
+fn an_include_of_a_folder_is_warned_of_at_its_place() {
+    for include in ["", "."] {
+        let text = format!("WorldBegin\nInclude '{include}'\nMaterial 'conductor'\n");
+        let scene = load("a.pbrt", &text);
+        assert_warned(&scene, "a.pbrt:2:1", &["is a folder"]);
+        assert_eq!(scene.materials.len(), 1);
     }
 }
 
 #[test]
 fn files_that_include_the_next_twice_are_refused() {
-    let kinds = [
-        ("pbrt", "Include \"NEXT\"\nInclude \"NEXT\"\n", ""),
-        (
-            "xml",
-            "<scene><include filename=\"NEXT\"/><include filename=\"NEXT\"/></scene>",
-            "<scene/>",
-        ),
+    for (extension, twice, last) in [
+        ("pbrt", "Include 'NEXT'\nInclude 'NEXT'\n", ""),
+        ("xml", "<scene><include filename='NEXT'/><include filename='NEXT'/></scene>", "<scene/>"),
         (
             "mtlx",
-            "<materialx><include href=\"NEXT\"/><include href=\"NEXT\"/></materialx>",
+            "<materialx><include href='NEXT'/><include href='NEXT'/></materialx>",
             "<materialx/>",
         ),
-    ];
-    for (extension, twice, last) in kinds {
+    ] {
         let name = |i: usize| format!("{i}.{extension}");
         let folder = Folder::new::<&str>(&[]);
         for i in 0..31 {
             let text = if i < 30 { twice.replace("NEXT", &name(i + 1)) } else { last.to_owned() };
-            fs::write(folder.path(&name(i)), text).unwrap();
+            folder.write(&name(i), text);
         }
-        let message = soon_refused(&folder, &name(0));
-        assert!(message.contains("more than 10000 times"), "{message}");
-        assert!(message.contains(&format!(".{extension}:")), "no place: {message}");
+        let place = format!(".{extension}:");
+        assert_soon_refused(&folder, &name(0), &["more than 10000 times", &place]);
     }
 }
 
 #[test]
 fn parameters_that_double_are_refused() {
-    let double = |i: usize| format!("<default name=\"a{}\" value=\"$a{i}$a{i}\"/>", i + 1);
-    let doubles: String = (0..60).map(double).collect();
-    let text = format!("<scene>\n<default name=\"a0\" value=\"xxxxxxxx\"/>{doubles}</scene>");
-    assert_soon_refused("a.xml", &text, &["a.xml:2:", "more than 64 MiB"]);
+    let double = |i: usize| format!("<default name='a{}' value='$a{i}$a{i}'/>", i + 1);
+    let text =
+        format!("<scene>\n<default name='a0' value='xxxxxxxx'/>{}</scene>", many(60, double));
+    let folder = Folder::new(&[("a.xml", text)]);
+    assert_soon_refused(&folder, "a.xml", &["a.xml:2:", "more than 128 MiB"]);
 
-    let many: String =
-        (0..1001).map(|i| format!("<default name=\"n{i}\" value=\"\"/>\n")).collect();
-    assert_refused("a.xml", &format!("<scene>{many}</scene>"), ":1001:1", &["more than 1000"]);
-    let many: String = (0..65).map(|i| format!("<path value=\"n{i}\"/>\n")).collect();
-    assert_refused("a.xml", &format!("<scene>{many}</scene>"), ":65:1", &["more than 64 <path>"]);
+    let text = format!("<scene>{}</scene>", many(65, |i| format!("<path value='n{i}'/>\n")));
+    assert_warned(&load("a.xml", &text), ":65:1", &["more than 64 <path>", "it is left out"]);
+    let name = "n".repeat(65);
+    let text = format!("<scene>\n<default name='{name}' value='1'/></scene>");
+    assert_warned(&load("a.xml", &text), ":2:1", &["more than 64 bytes", "it is left out"]);
 }
 
 #[test]
-fn xml_that_its_parser_cannot_take_is_refused() {
-    let attributes: String = (0..300_000).map(|i| format!(" a{i}=\"\"")).collect();
-    assert_refused(
-        "a.xml",
-        &format!("<scene>\n<a{attributes}/></scene>"),
-        ":2:2",
-        &["256 attributes"],
-    );
-    let spaces: String = (0..100).map(|i| format!("<a xmlns:a{i}=\"b\"/>\n")).collect();
-    assert_refused(
-        "a.mtlx",
-        &format!("<materialx>{spaces}</materialx>"),
-        ":65:4",
-        &["64 namespaces"],
-    );
-    let elements = "<a/>".repeat(2_200_000);
-    assert_refused("a.xml", &format!("<scene>{elements}</scene>"), "", &["2097152 elements"]);
-    let attributes = "<a b=\"\" c=\"\"/>".repeat(800_000);
-    assert_refused("a.xml", &format!("<scene>{attributes}</scene>"), "", &["1572864 attributes"]);
-    // Together, by files that are small enough.
-    let part = format!("<scene>{}</scene>", "<a/>".repeat(600_000));
-    let whole = "<scene>\n<include filename=\"b.xml\"/><include filename=\"b.xml\"/>\
-                 <include filename=\"b.xml\"/><include filename=\"b.xml\"/></scene>";
-    let folder = Folder::new(&[("a.xml", whole), ("b.xml", &part)]);
-    assert!(soon_refused(&folder, "a.xml").contains("2097152 elements"));
-    let part = format!("<scene><!--{}--></scene>", " ".repeat(20_000_000));
-    let folder = Folder::new(&[("a.xml", whole), ("b.xml", &part)]);
-    let message = soon_refused(&folder, "a.xml");
-    assert!(message.contains("a.xml:2:") && message.contains("64 MiB"), "{message}");
-}
-
-/// Each of them would be escaped by itself.
-#[test]
-fn very_many_ampersands_and_tokens_are_refused() {
-    for many in ["&", "&#1", "<a>"] {
-        let count = (40 << 20) / many.len();
-        let text = format!("<materialx>\n<a b=\"{}\"/></materialx>", many.repeat(count));
-        assert_soon_refused("a.mtlx", &text, &["a.mtlx:2:"]);
+fn very_many_elements_and_attributes_are_refused() {
+    let parts = ["a.xml:1:", "3145728 elements and attributes"];
+    for many in ["<a/>".repeat(3_200_000), "<a b='' c=''/>".repeat(1_100_000)] {
+        let text = format!("<scene>{many}</scene>");
+        assert_soon_refused(&Folder::new(&[("a.xml", text)]), "a.xml", &parts);
     }
-    let text = format!("<materialx a=\"{}&#{}\"/>", "&".repeat(200_000), "1".repeat(1 << 20));
+    let text = format!("<scene>\n<a{}/></scene>", many(300_000, |i| format!(" a{i}=''")));
+    assert_eq!(soon_loaded("a.xml", &text).materials, []);
+    // Together, by files that are small enough.
+    let whole = format!("<scene>\n{}</scene>", "<include filename='b.xml'/>".repeat(4));
+    let load = |part: String, parts: &[&str]| {
+        let folder =
+            Folder::new(&[("a.xml", &whole), ("b.xml", &format!("<scene>{part}</scene>"))]);
+        assert_soon_refused(&folder, "a.xml", parts);
+    };
+    load("<a/>".repeat(900_000), &["3145728 elements"]);
+    load(format!("<!--{}-->", " ".repeat(40_000_000)), &["a.xml:2:", "128 MiB"]);
+}
+
+/// Each of them stands for itself.
+#[test]
+fn very_many_ampersands_and_tokens_are_read() {
+    for many in ["&", "&#1", "<a>"] {
+        let count = (20 << 20) / many.len();
+        let text = format!("<materialx>\n<a b='{}'/></materialx>", many.repeat(count));
+        assert_eq!(soon_loaded("a.mtlx", &text).materials, []);
+    }
+    let text = format!("<materialx a='{}&#{}'/>", "&".repeat(200_000), "1".repeat(1 << 20));
     assert_eq!(soon_loaded("a.mtlx", &text).materials, []);
 }
 
@@ -280,22 +243,23 @@ fn very_many_ampersands_and_tokens_are_refused() {
 fn includes_do_not_add_to_the_nesting() {
     let folder = Folder::new::<&str>(&[]);
     for i in 0..60 {
-        let include = format!("<include filename=\"{}.xml\"/>", i + 1);
+        let include = format!("<include filename='{}.xml'/>", i + 1);
         let inner = if i < 59 { include } else { String::new() };
-        let text = format!("<scene>{}{inner}{}</scene>", "<a>".repeat(250), "</a>".repeat(250));
-        fs::write(folder.path(&format!("{i}.xml")), text).unwrap();
+        let text = format!("<scene>{}{inner}{}</scene>", "<a>".repeat(120), "</a>".repeat(120));
+        folder.write(&format!("{i}.xml"), text);
     }
-    assert!(soon_refused(&folder, "0.xml").contains("nested more than 256 deep"));
+    assert_soon_refused(&folder, "0.xml", &["nested more than 128 deep"]);
+    let text = format!("<scene>\n{}", "<a>".repeat(128));
+    assert_refused("a.xml", &text, ":2:382", &["nested more than 128 deep"]);
 }
 
 #[test]
 fn long_chains_of_references_take_no_stack() {
-    let links: String = (0..100_000)
-        .map(|i| format!("<bsdf type=\"mask\" id=\"b{i}\"><ref id=\"b{}\"/></bsdf>", i + 1))
-        .collect();
+    let link = |i: usize| format!("<bsdf type='mask' id='b{i}'><ref id='b{}'/></bsdf>", i + 1);
     let text = format!(
-        "<scene>{links}<bsdf type=\"roughconductor\" id=\"b100000\"/>\
-         <shape type=\"cube\"><ref id=\"b0\"/></shape></scene>"
+        "<scene>{}<bsdf type='roughconductor' id='b100000'/>\
+         <shape type='cube'><ref id='b0'/></shape></scene>",
+        many(100_000, link)
     );
     let scene = load("a.xml", &text);
     assert!(scene.materials[0].used && scene.materials.len() == 1);
@@ -303,139 +267,124 @@ fn long_chains_of_references_take_no_stack() {
 
 #[test]
 fn bsdfs_that_hold_each_other_are_warned_of_at_their_place() {
-    let case = |text: &str, place: &str, circle: &str| {
-        let text = format!("<scene version=\"3.0.0\">\n{text}</scene>");
-        assert_warned(&load("a.xml", &text), place, &[circle]);
-        let shape = "<shape type=\"cube\"><ref id=\"a\"/></shape></scene>";
-        assert_warned(&load("a.xml", &text.replace("</scene>", shape)), place, &[circle]);
-    };
     let bsdf = |id: &str, class: &str, inner: &str| {
-        format!("<bsdf type=\"{class}\" id=\"{id}\"><ref id=\"{inner}\"/></bsdf>\n")
+        format!("<bsdf type='{class}' id='{id}'><ref id='{inner}'/></bsdf>\n")
     };
-    case(&bsdf("a", "twosided", "a"), ":2:30", "circle: a -> a");
-    let two = bsdf("a", "mask", "b") + &bsdf("b", "bumpmap", "a");
-    case(&two, ":3:29", "circle: a -> b -> a");
-    let nested = "<bsdf type=\"blendbsdf\" id=\"a\"><bsdf type=\"roughconductor\"/>\
-                  <bsdf type=\"twosided\">\n<ref id=\"a\"/></bsdf></bsdf>";
-    case(nested, ":3:1", "circle: a -> a");
-    let alias = bsdf("x", "mask", "a") + "<alias id=\"x\" as=\"a\"/>";
-    case(&alias, ":2:26", "circle: a -> a");
+    let nested = "<bsdf type='blendbsdf' id='a'><bsdf type='roughconductor'/>\
+                  <bsdf type='twosided'>\n<ref id='a'/></bsdf></bsdf>";
+    for (text, place, circle) in [
+        (bsdf("a", "twosided", "a"), ":2:30", "circle: a -> a"),
+        (bsdf("a", "mask", "b") + &bsdf("b", "bumpmap", "a"), ":3:29", "circle: a -> b -> a"),
+        (nested.to_owned(), ":3:1", "circle: a -> a"),
+        (bsdf("x", "mask", "a") + "<alias id='x' as='a'/>", ":2:26", "circle: a -> a"),
+    ] {
+        for shape in ["", "<shape type='cube'><ref id='a'/></shape>"] {
+            let text = format!("<scene version='3.0.0'>\n{text}{shape}</scene>");
+            assert_warned(&load("a.xml", &text), place, &[circle]);
+        }
+    }
 }
 
 #[test]
 fn mixtures_of_each_other_are_warned_of_at_their_place() {
     let mix = |name: &str, parts: &str| {
-        format!(
-            "MakeNamedMaterial \"{name}\" \"string type\" \"mix\" \"string materials\" [ {parts} ]\n"
-        )
+        format!("MakeNamedMaterial '{name}' 'string type' 'mix' 'string materials' [ {parts} ]\n")
     };
-    let metal = "MakeNamedMaterial \"metal\" \"string type\" \"conductor\"\n";
-    for last in ["", "Material \"mix\" \"string materials\" [ \"a\" \"b\" ]\nShape \"sphere\"\n"] {
-        let own =
-            metal.to_owned() + &mix("a", "\"metal\" \"a\"") + &mix("b", "\"metal\" \"metal\"");
-        let circles = |text: String, circle: &str| {
-            let scene = load("a.pbrt", &(text + last));
+    let metal = "MakeNamedMaterial 'metal' 'string type' 'conductor'\n";
+    for last in ["", "Material 'mix' 'string materials' [ 'a' 'b' ]\nShape 'sphere'\n"] {
+        for (a, b, circle) in [
+            ("'metal' 'a'", "'metal' 'metal'", "circle: a -> a"),
+            ("'b' 'metal'", "'metal' 'a'", "circle: a -> b -> a"),
+        ] {
+            let scene = load("a.pbrt", &(metal.to_owned() + &mix("a", a) + &mix("b", b) + last));
             assert_warned(&scene, ":2:1", &[circle]);
             assert_eq!(names(&scene), ["metal"]);
-        };
-        circles(own, "circle: a -> a");
-        let two = metal.to_owned() + &mix("a", "\"b\" \"metal\"") + &mix("b", "\"metal\" \"a\"");
-        circles(two, "circle: a -> b -> a");
+        }
     }
     // Each of the next twice: a diamond, and no circle.
-    let chain: String =
-        (0..64).map(|i| mix(&format!("m{i}"), &format!("\"m{0}\" \"m{0}\"", i + 1))).collect();
+    let chain = many(64, |i| mix(&format!("m{i}"), &format!("'m{0}' 'm{0}'", i + 1)));
     let end = metal.replace("metal", "m64");
     assert_eq!(names(&load("a.pbrt", &(chain + &end))), ["m64"]);
 }
 
 #[test]
 fn nodes_of_shaders_and_values_in_a_circle_are_warned_of() {
-    let document = |text: &str| format!("<materialx version=\"1.39\">\n{text}</materialx>");
+    let document = |text: &str| format!("<materialx version='1.39'>\n{text}</materialx>");
     let mix = |name: &str, of: &str| {
         format!(
-            "<mix name=\"{name}\" type=\"surfaceshader\"><input name=\"fg\" nodename=\"{of}\"/>\
-             <input name=\"mix\" value=\"1\"/></mix>\n"
+            "<mix name='{name}' type='surfaceshader'><input name='fg' nodename='{of}'/>\
+             <input name='mix' value='1'/></mix>\n"
         )
     };
-    let warned = |text: &str, circle: &str| {
-        let scene = load("a.mtlx", &document(text));
-        let start = format!("a.mtlx:2:1: nodes are connected in a circle: {circle};");
-        assert!(scene.warnings[0].contains(&start), "{:?}", scene.warnings);
-        assert!(scene.materials.is_empty() && scene.ignored.iter().all(|one| !one.understood));
-    };
-    warned(&(mix("a", "b") + &mix("b", "a")), "a -> b -> a");
-    warned(&mix("a", "a"), "a -> a");
     // Through a graph and its interface.
-    let through = "<dot name=\"n\"><input name=\"in\" nodegraph=\"g\"/></dot>\
-         <nodegraph name=\"g\"><input name=\"i\" nodename=\"n\"/>\
-         <dot name=\"m\"><input name=\"in\" interfacename=\"i\"/></dot>\
-         <output name=\"o\" nodename=\"m\"/></nodegraph>";
-    warned(through, "n -> o -> m -> i -> n");
+    let through = "<dot name='n'><input name='in' nodegraph='g'/></dot>\
+         <nodegraph name='g'><input name='i' nodename='n'/>\
+         <dot name='m'><input name='in' interfacename='i'/></dot>\
+         <output name='o' nodename='m'/></nodegraph>";
+    for (text, circle) in [
+        (mix("a", "b") + &mix("b", "a"), "a -> b -> a"),
+        (mix("a", "a"), "a -> a"),
+        (through.to_owned(), "n -> o -> m -> i -> n"),
+    ] {
+        let scene = load("a.mtlx", &document(&text));
+        let start = format!("a.mtlx:2:1: nodes are connected in a circle: {circle};");
+        assert_says(&scene.warnings[0], &[&start]);
+        assert!(scene.materials.is_empty() && scene.ignored.iter().all(|one| !one.understood));
+    }
     // A graph twice in a chain, by different outputs, is no circle.
     let twice = document(
-        "<nodegraph name=\"g\"><input name=\"i\" nodename=\"n\"/>\
-         <output name=\"o\" interfacename=\"i\"/><constant name=\"c\"><input name=\"value\" value=\"0.5\"/></constant>\
-         <output name=\"p\" nodename=\"c\"/></nodegraph>\
-         <dot name=\"n\"><input name=\"in\" nodegraph=\"g\" output=\"p\"/></dot>\
-         <standard_surface name=\"s\" type=\"surfaceshader\"><input name=\"specular_roughness\" nodegraph=\"g\" output=\"o\"/>\
-         </standard_surface>",
+        "<nodegraph name='g'><input name='i' nodename='n'/><output name='o' interfacename='i'/>\
+         <constant name='c'><input name='value' value='0.5'/></constant>\
+         <output name='p' nodename='c'/></nodegraph>\
+         <dot name='n'><input name='in' nodegraph='g' output='p'/></dot>\
+         <standard_surface name='s' type='surfaceshader'>\
+         <input name='specular_roughness' nodegraph='g' output='o'/></standard_surface>",
     );
-    assert_eq!(load("a.mtlx", &twice).materials[0].lobe.roughness, crate::isotropic(0.25));
+    assert_eq!(load("a.mtlx", &twice).materials[0].lobe.roughness, isotropic(0.25));
 }
 
 #[test]
 fn pbrt_scenes_that_would_fill_the_memory_are_refused() {
-    let refused = |text: &str, part: &str| {
-        let folder = Folder::new(&[("a.pbrt", text)]);
-        let message = soon_refused(&folder, "a.pbrt");
-        assert!(message.contains("a.pbrt:") && message.contains(part), "{message}");
-    };
-    let with = |unit: &str, count: usize| unit.repeat(count);
-    refused(&with("AttributeBegin\n", 20_000), "10000 deep");
-    refused(&with("Material \"conductor\"\n", 100_001), "100000 materials");
-    let named: String = (0..100_001).map(|i| format!("NamedMaterial \"{i}\"\n")).collect();
-    refused(&named, "100000 materials");
-    let textures: String =
-        (0..100_001).map(|i| format!("Texture \"{i}\" \"float\" \"constant\"\n")).collect();
-    refused(&textures, "100000 textures");
-    refused(&format!("Material \"hair\" {}", with("\"float a\" 1 ", 65)), "64 parameters");
-    let attributes: String =
-        (0..65).map(|i| format!("Attribute \"material\" \"float a{i}\" 1\n")).collect();
-    refused(&attributes, "64 attributes");
-    let long = format!("Material \"hair\" \"string s\" \"{}\"\n", "x".repeat(4000));
-    refused(&with(&long, 5000), "16 MiB of parameters");
+    let long = format!("Material 'hair' 'string s' '{}'\n", "x".repeat(4000));
+    for (text, part) in [
+        ("AttributeBegin\n".repeat(100_001), "100000 blocks"),
+        ("Material 'conductor'\n".repeat(100_001), "100000 materials"),
+        (many(100_001, |i| format!("NamedMaterial '{i}'\n")), "100000 materials"),
+        (many(100_001, |i| format!("Texture '{i}' 'float' 'constant'\n")), "100000 textures"),
+        (format!("Material 'hair' {}", "'float a' 1 ".repeat(65)), "64 parameters"),
+        (many(65, |i| format!("Attribute 'material' 'float a{i}' 1\n")), "64 attributes"),
+        (long.repeat(5000), "16 MiB of parameters"),
+    ] {
+        assert_soon_refused(&Folder::new(&[("a.pbrt", text)]), "a.pbrt", &["a.pbrt:", part]);
+    }
     // Blocks copy the attributes in force, and share them.
-    let values = format!("\"{}\" ", "x".repeat(4000)).repeat(16);
-    let attributes: String =
-        (0..64).map(|i| format!("Attribute \"material\" \"string a{i}\" [ {values}]\n")).collect();
-    let blocks = "AttributeBegin Material \"conductor\" AttributeEnd\n".repeat(20_000);
+    let values = format!("'{}' ", "x".repeat(4000)).repeat(16);
+    let attributes = many(64, |i| format!("Attribute 'material' 'string a{i}' [ {values}]\n"));
+    let blocks = "AttributeBegin Material 'conductor' AttributeEnd\n".repeat(20_000);
     assert_eq!(load("a.pbrt", &(attributes + &blocks)).materials.len(), 20_000);
 }
 
 #[test]
 fn gltf_scenes_that_would_fill_the_memory_are_refused() {
+    let document = |rest: &str| format!("{{'asset':{{'version':'2.0'}},{rest}}}");
     for list in ["materials", "textures", "images", "buffers"] {
-        let elements = "{},".repeat(1_100_000);
-        let text = format!("{{\"asset\":{{\"version\":\"2.0\"}},\"{list}\":[{elements}{{}}]}}");
-        assert_soon_refused("a.gltf", &text, &["a.gltf:1", "more than 1048576 elements"]);
+        let text = document(&format!("'{list}':[{}{{}}]", "{},".repeat(1_100_000)));
+        let folder = Folder::new(&[("a.gltf", text)]);
+        if list == "materials" {
+            assert_soon_refused(&folder, "a.gltf", &["a.gltf", "more than 100000 materials"]);
+        } else {
+            assert_eq!(soon(&folder, "a.gltf").unwrap().materials, []);
+        }
     }
     // For each of the materials it is said why the texture cannot be read, which quotes it.
-    let mut materials =
-        "{\"pbrMetallicRoughness\":{\"metallicRoughnessTexture\":{\"index\":0}}},".repeat(99_999);
-    materials.push_str("{}");
-    let source = "x".repeat(16 << 20);
-    let text = format!(
-        "{{\"asset\":{{\"version\":\"2.0\"}},\"materials\":[{materials}],\
-         \"textures\":[{{\"source\":\"{source}\"}}]}}"
-    );
-    assert_eq!(soon_loaded("a.gltf", &text).warnings.len(), 1);
-    let materials = "{},".repeat(100_000);
-    let text = format!("{{\"asset\":{{\"version\":\"2.0\"}},\"materials\":[{materials}{{}}]}}");
-    assert_soon_refused("a.gltf", &text, &["a.gltf", "more than 100000 materials"]);
+    let material = "{'pbrMetallicRoughness':{'metallicRoughnessTexture':{'index':0}}},";
+    let materials = format!("'materials':[{}{{}}]", material.repeat(99_999));
+    let textures = format!("'textures':[{{'source':'{}'}}]", "x".repeat(16 << 20));
+    let scene = soon_loaded("a.gltf", &document(&format!("{materials},{textures}")));
+    assert_eq!(scene.warnings.len(), 1);
     let container = [&b"glTF\x02\0\0\0\0\0\0\0\xff\xff\xff\xffJSON"[..], &[b' '; 99]].concat();
-    let message = soon_refused(&Folder::new(&[("a.glb", container)]), "a.glb");
-    assert!(message.contains("4294967295 bytes") && message.contains("128 MiB"), "{message}");
+    let folder = Folder::new(&[("a.glb", container)]);
+    assert_soon_refused(&folder, "a.glb", &["4294967295 bytes", "128 MiB"]);
 }
 
 #[test]
@@ -445,56 +394,56 @@ fn recipes_that_would_take_hours_are_refused() {
     let ones = "1,".repeat(5 << 20);
     let long = [entry(0, "sigma = 1\ngamma = 3"), entry(1, &format!("theta = [{ones}]"))].concat();
     assert_refused("a.toml", &long, ":5:1", &["10485795 bytes", "at most 8 MiB"]);
-    let blank = "\n".repeat((64 << 20) + 1);
-    assert_soon_refused("a.toml", &blank, &["a.toml", "at most 64 MiB"]);
-    let gtr = "distribution = \"gtr\"\nc = 0.2\ngamma = 1.5";
-    let many: String = (0..1001).map(|i| entry(i, gtr)).collect();
-    assert_refused("a.toml", &many, ":5003:16", &["more than 1000", "distribution"]);
+    let blank = Folder::new(&[("a.toml", "\n".repeat((64 << 20) + 1))]);
+    assert_soon_refused(&blank, "a.toml", &["a.toml", "at most 64 MiB"]);
+    let gtr = many(1001, |i| entry(i, "distribution = \"gtr\"\nc = 0.2\ngamma = 1.5"));
+    assert_refused("a.toml", &gtr, ":5003:16", &["more than 1000", "distribution"]);
 }
 
 /// A name stands in every lobe of its material.
 #[test]
-fn names_longer_than_names_are_refused() {
+fn names_longer_than_names_are_shortened() {
     let name = "b".repeat(1025);
-    let inner = "<bsdf type=\"roughconductor\"/>".repeat(3);
-    let text = format!("<scene><bsdf type=\"twosided\" id=\"{name}\">\n{inner}</bsdf></scene>");
-    assert_refused("a.xml", &text, ":2:1", &["1025 bytes", "1024"]);
-    assert_eq!(load("a.xml", &text.replace(&name, &name[1..])).materials.len(), 3);
+    let inner = "<bsdf type='roughconductor'/>".repeat(3);
+    let scene = |name: &str| {
+        let text = format!("<scene><bsdf type='twosided' id='{name}'>\n{inner}</bsdf></scene>");
+        load("a.xml", &text)
+    };
+    let short = format!("{} ...", &name[1..]);
+    let numbered = [2, 3].map(|number| format!("{short} ({number})"));
+    assert_eq!(names(&scene(&name)), [&short, &numbered[0], &numbered[1]]);
+    assert_eq!(names(&scene(&name[1..]))[0], &name[1..]);
 }
 
 #[test]
 fn a_roughness_that_overflows_is_not_understood() {
-    let text = "Texture \"a\" \"float\" \"constant\" \"float value\" 1e308\n\
-                Texture \"b\" \"float\" \"scale\" \"texture tex\" \"a\" \"texture scale\" \"a\"\n\
-                Material \"conductor\" \"texture roughness\" \"b\"\n";
+    let text = "Texture 'a' 'float' 'constant' 'float value' 1e308\n\
+                Texture 'b' 'float' 'scale' 'texture tex' 'a' 'texture scale' 'a'\n\
+                Material 'conductor' 'texture roughness' 'b'\n";
     let scene = load("a.pbrt", text);
     let name = "conductor at a.pbrt:3";
     assert_not_understood(&scene, name, ":3:1", &["a.pbrt:3:22: ", "[inf, inf]", "finite"]);
-    let node = |name: &str, class: &str, a: &str, b: &str| {
+    let node = |name: &str, class: &str, ends: &str| {
         format!(
-            "<{class} name=\"{name}\"><input name=\"in1\" {a}/><input name=\"in2\" {b}/></{class}>"
+            "<{class} name='{name}'><input name='in1' {ends}/><input name='in2' {ends}/></{class}>"
         )
     };
-    let huge = "value=\"1e308\"";
     let text = format!(
-        "<materialx>\n{}{}<standard_surface name=\"s\" type=\"surfaceshader\">\
-         <input name=\"specular_roughness\" nodename=\"nan\"/></standard_surface></materialx>",
-        node("inf", "multiply", huge, huge),
-        node("nan", "subtract", "nodename=\"inf\"", "nodename=\"inf\""),
+        "<materialx>\n{}{}<standard_surface name='s' type='surfaceshader'>\
+         <input name='specular_roughness' nodename='nan'/></standard_surface></materialx>",
+        node("inf", "multiply", "value='1e308'"),
+        node("nan", "subtract", "nodename='inf'"),
     );
     let scene = load("a.mtlx", &text);
-    for part in ["a.mtlx:2:", "come to", "finite"] {
-        assert!(scene.ignored[0].reason.contains(part), "{}", scene.ignored[0]);
-    }
+    assert_says(&scene.ignored[0].reason, &["a.mtlx:2:", "come to", "finite"]);
 }
 
 /// The suggestion compares names, in time that grows with the square of their length.
 #[test]
 fn long_words_get_no_suggestion() {
     let (a, b) = ("a".repeat(1 << 20), "b".repeat(1 << 20));
-    let text = format!(
-        "<scene><texture id=\"{a}\" type=\"bitmap\"/><shape><ref id=\"{b}\"/></shape></scene>"
-    );
+    let text =
+        format!("<scene><texture id='{a}' type='bitmap'/><shape><ref id='{b}'/></shape></scene>");
     let scene = soon_loaded("a.xml", &text);
     let [warning] = &scene.warnings[..] else { panic!("{} warnings", scene.warnings.len()) };
     assert!(warning.contains("nothing has the id") && warning.len() < 2000, "{}", warning.len());
@@ -503,68 +452,57 @@ fn long_words_get_no_suggestion() {
 /// Every lookup by name is by an index.
 #[test]
 fn documents_of_many_nodes_take_linear_time() {
-    let nodes: String = (0..30_000)
-        .map(|i| {
-            format!(
-                "<standard_surface name=\"s{i}\" type=\"surfaceshader\">\
-                 <input name=\"specular_roughness\" nodename=\"z\"/></standard_surface>\
-                 <surfacematerial name=\"m{i}\"><input name=\"surfaceshader\" nodename=\"s{i}\"/></surfacematerial>"
-            )
-        })
-        .collect();
-    let text = format!(
-        "<materialx>{nodes}<constant name=\"z\"><input name=\"value\" value=\"0.5\"/></constant></materialx>"
-    );
-    let start = Instant::now();
-    let scene = load("a.mtlx", &text);
+    let nodes = many(30_000, |i| {
+        format!(
+            "<standard_surface name='s{i}' type='surfaceshader'>\
+             <input name='specular_roughness' nodename='z'/></standard_surface>\
+             <surfacematerial name='m{i}'><input name='surfaceshader' nodename='s{i}'/></surfacematerial>"
+        )
+    });
+    let end = "<constant name='z'><input name='value' value='0.5'/></constant>";
+    let scene = soon_loaded("a.mtlx", &format!("<materialx>{nodes}{end}</materialx>"));
     assert!(scene.materials.len() == 30_000 && scene.materials[29_999].name == "m29999");
-    assert!(start.elapsed() < Duration::from_secs(60), "{:?}", start.elapsed());
 }
 
-/// A scene may have very many of what is not understood, each with a long text.
+/// A scene may have very many of what is not understood, each with a long text, and each of them
+/// may be told the names that are known.
 #[test]
 fn what_is_not_understood_is_bounded() {
     // Suggestions for 20 000 names among 10 000.
     let (near, far) = ("n".repeat(20), "f".repeat(20));
-    let named: String = (0..10_000)
-        .map(|i| format!("MakeNamedMaterial \"{near}{i}\" \"string type\" \"hair\"\n"))
-        .collect();
-    let lost: String = (0..20_000).map(|i| format!("NamedMaterial \"{far}{i}\"\n")).collect();
+    let named = many(10_000, |i| format!("MakeNamedMaterial '{near}{i}' 'string type' 'hair'\n"));
+    let lost = many(20_000, |i| format!("NamedMaterial '{far}{i}'\n"));
     let scene = soon_loaded("a.pbrt", &(named + &lost));
     assert_eq!(scene.warnings.len(), 10_001);
     assert!(scene.warnings[10_000].contains("further warnings are not listed"));
     // One long value that very many materials quote.
     let long = "x".repeat(4000);
-    let texture = format!("Texture \"t\" \"float\" \"constant\" \"float value\" \"{long}\"\n");
-    let materials = "Material \"conductor\" \"texture roughness\" \"t\"\n".repeat(20_000);
+    let texture = format!("Texture 't' 'float' 'constant' 'float value' '{long}'\n");
+    let materials = "Material 'conductor' 'texture roughness' 't'\n".repeat(20_000);
     let scene = soon_loaded("a.pbrt", &(texture + &materials));
     assert_eq!(scene.ignored.len(), 20_000);
     assert!(scene.ignored.iter().all(|ignored| ignored.reason.len() < 1100));
-    // References to nothing.
-    let lost: String = (0..100_000).map(|i| format!("<ref id=\"{far}{i}\"/>")).collect();
-    let text = format!("<scene><shape type=\"cube\">{lost}</shape></scene>");
-    assert_eq!(soon_loaded("a.xml", &text).warnings.len(), 10_001);
-}
-
-/// Each of them may be told the names that are known.
-#[test]
-fn unknown_names_are_bounded() {
-    let members: String = (0..1_000_000).map(|i| format!("\"a{i}\":0,")).collect();
-    let text = format!(
-        "{{\"asset\":{{\"version\":\"2.0\"}},\"materials\":[{{{members}\"name\":\"m\"}}]}}"
-    );
-    assert_eq!(soon_loaded("a.gltf", &text).warnings.len(), 100);
-    let inputs = |word: &str| {
-        (0..100_000).map(|i| format!("<input name=\"{word}{i}\"/>")).collect::<String>()
-    };
-    let text = format!(
-        "<materialx><nodedef name=\"d\" node=\"n\">{}</nodedef><n type=\"float\">{}</n></materialx>",
-        inputs("known"),
-        inputs("other")
-    );
-    assert_eq!(soon_loaded("a.mtlx", &text).warnings.len(), 10_001);
-    let properties: String =
-        (0..100_000).map(|i| format!("<float name=\"a{i}\" value=\"1\"/>")).collect();
-    let text = format!("<scene><bsdf type=\"conductor\">{properties}</bsdf></scene>");
-    assert_eq!(soon_loaded("a.xml", &text).warnings.len(), 10_001);
+    // References to nothing, and members, inputs and properties that nothing has.
+    let refs = many(100_000, |i| format!("<ref id='{far}{i}'/>"));
+    let members = many(1_000_000, |i| format!("'a{i}':0,"));
+    let inputs = |word: &str| many(100_000, |i| format!("<input name='{word}{i}'/>"));
+    let (known, other) = (inputs("known"), inputs("other"));
+    let properties = many(100_000, |i| format!("<float name='a{i}' value='1'/>"));
+    for (name, text) in [
+        ("a.xml", format!("<scene><shape type='cube'>{refs}</shape></scene>")),
+        (
+            "a.gltf",
+            format!("{{'asset':{{'version':'2.0'}},'materials':[{{{members}'name':'m'}}]}}"),
+        ),
+        (
+            "a.mtlx",
+            format!(
+                "<materialx><nodedef name='d' node='n'>{known}</nodedef>\
+                 <n type='float'>{other}</n></materialx>"
+            ),
+        ),
+        ("a.xml", format!("<scene><bsdf type='conductor'>{properties}</bsdf></scene>")),
+    ] {
+        assert_eq!(soon_loaded(name, &text).warnings.len(), 10_001, "{name}");
+    }
 }

@@ -25,9 +25,18 @@ impl Folder {
     fn new<C: AsRef<[u8]>>(files: &[(&str, C)]) -> Self {
         let folder = Self(tempfile::tempdir().unwrap());
         for (name, content) in files {
-            fs::write(folder.path(name), content).unwrap();
+            folder.write(name, content);
         }
         folder
+    }
+
+    /// Writes a file; in a text for pbrt and in JSON, ' stands for ".
+    fn write(&self, name: &str, content: impl AsRef<[u8]>) {
+        let mut content = content.as_ref().to_vec();
+        if name.ends_with(".pbrt") || name.ends_with(".gltf") {
+            content.iter_mut().filter(|byte| **byte == b'\'').for_each(|byte| *byte = b'"');
+        }
+        fs::write(self.path(name), content).unwrap();
     }
 
     fn path(&self, name: &str) -> PathBuf {
@@ -44,6 +53,14 @@ fn load(name: &str, text: &str) -> Scene {
     Folder::new(&[(name, text)]).load(name).unwrap()
 }
 
+/// Checks that the message holds all of `parts`, in which ' stands for ".
+#[track_caller]
+fn assert_says(message: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(message.contains(&part.replace('\'', "\"")), "no {part:?} in {message}");
+    }
+}
+
 /// Checks that the file is refused at "line:column" with a message that holds all of `parts`.
 #[track_caller]
 fn assert_refused(name: &str, text: &str, place: &str, parts: &[&str]) {
@@ -51,9 +68,7 @@ fn assert_refused(name: &str, text: &str, place: &str, parts: &[&str]) {
     let message = error.to_string();
     let (_, after) = message.split_once(name).unwrap();
     assert!(after.starts_with(&format!("{place}: ")), "{message}");
-    for part in parts {
-        assert!(message.contains(part), "no {part:?} in {message}");
-    }
+    assert_says(&message, parts);
 }
 
 fn named<'a>(scene: &'a Scene, name: &str) -> &'a Material {
@@ -78,9 +93,7 @@ fn assert_not_understood(scene: &Scene, name: &str, place: &str, parts: &[&str])
         !entry.understood && message.contains(&format!("{place}: not understood")),
         "{message}"
     );
-    for part in parts {
-        assert!(message.contains(part), "no {part:?} in {message}");
-    }
+    assert_says(&message, parts);
 }
 
 /// Checks that the scene has this one warning, at "line:column", and that it holds all of `parts`.
@@ -88,9 +101,7 @@ fn assert_not_understood(scene: &Scene, name: &str, place: &str, parts: &[&str])
 fn assert_warned(scene: &Scene, place: &str, parts: &[&str]) {
     let [warning] = &scene.warnings[..] else { panic!("{:?}", scene.warnings) };
     assert!(warning.contains(&format!("{place}: ")), "{warning}");
-    for part in parts {
-        assert!(warning.contains(part), "no {part:?} in {warning}");
-    }
+    assert_says(warning, parts);
 }
 
 fn isotropic(sigma: f64) -> Roughness {

@@ -1,53 +1,18 @@
-//! Included files: checks for circular inclusion, and a limit for all of them together, since a few
-//! files that include each other twice amount to any number.
+//! The text of a scene and of the files that it includes: checks for circular inclusion, and one
+//! limit for all, since a few files that include each other twice amount to any number.
 
 use std::collections::BTreeSet;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
+use flate2::read::MultiGzDecoder;
+
 use microfacet_baker::input;
-use microfacet_baker::scene::{Place, SceneError};
+use microfacet_baker::scene::Place;
 
+use crate::Result;
+use crate::builder::Builder;
 use crate::limits::{self, Budget};
-
-/// Deeper nesting than this is refused as a mistake.
-const MAX_DEPTH: usize = 64;
-
-/// What is said of a file, included as `name`, that [`Includes::enter`] did not find.
-pub(super) fn absent(name: &str, file: &Path) -> String {
-    // The empty name is the folder of the scene.
-    if file.is_dir() {
-        format!("\"{name}\" is a folder and no file")
-    } else {
-        format!("{name} is missing")
-    }
-}
-
-/// Why more text is refused.
-fn spent(text: &Budget) -> String {
-    format!(
-        "the scene has more than {} MiB of text, with all that is included and substituted; load a \
-         file that has the materials alone",
-        text.limit() >> 20
-    )
-}
-
-/// A reader that takes what it reads from a budget.
-pub(super) struct Metered<R> {
-    input: R,
-    budget: Budget,
-}
-
-impl<R: Read> Read for Metered<R> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = self.input.read(buffer)?;
-        if self.budget.take(count as u64) {
-            Ok(count)
-        } else {
-            Err(io::Error::new(io::ErrorKind::FileTooLarge, spent(&self.budget)))
-        }
-    }
-}
 
 /// The files being read, from the scene's own to the innermost included one.
 pub(super) struct Includes {
@@ -66,10 +31,50 @@ impl Includes {
         Self { open: Vec::new(), count: 0, found: BTreeSet::new(), text: Budget::new(limit) }
     }
 
-    /// Opens `file`, which `place` asks for. Each success must be followed by [`Self::leave`].
-    ///
-    /// Returns `false` if there is no such file, for which [`absent`] has words.
-    pub(super) fn enter(&mut self, file: &Path, place: &Place) -> Result<bool, SceneError> {
+    /// The text of the scene's own file.
+    pub(super) fn open(&mut self, file: &Path) -> Result<Vec<u8>> {
+        let place = Place::file(file);
+        // A folder, which is no error of an include here.
+        input::open(file, u64::MAX).map_err(|error| place.io(error))?;
+        self.enter(file, &place)?;
+        self.text(file, &place)
+    }
+
+    /// The text of a file that `place` includes under a name, to be followed by [`Self::leave`];
+    /// `None`, with a warning that ends with `said`, if there is no such file.
+    pub(super) fn include(
+        &mut self,
+        (name, file): (&str, &Path),
+        place: &Place,
+        builder: &mut Builder,
+        said: &str,
+    ) -> Result<Option<Vec<u8>>> {
+        if self.enter(file, place)? {
+            return self.text(file, place).map(Some);
+        }
+        builder.warn(
+            place,
+            // The empty name is the folder of the scene.
+            match file.is_dir() {
+                true => format!("\"{name}\" is a folder and no file; {said}"),
+                false => format!("{name} is missing; {said}"),
+            },
+        );
+        Ok(None)
+    }
+
+    /// Closes the innermost file.
+    pub(super) fn leave(&mut self) {
+        self.open.pop();
+    }
+
+    /// The files that were included, without the scene's own.
+    pub(super) fn found(self) -> Vec<PathBuf> {
+        self.found.into_iter().collect()
+    }
+
+    /// Notes that `file` is read, which `place` asks for; `false` if there is no such file.
+    fn enter(&mut self, file: &Path, place: &Place) -> Result<bool> {
         if self.count > limits::INCLUDES {
             return Err(place.too_large(format!(
                 "the scene includes files more than {} times; include each once, and check for \
@@ -78,12 +83,9 @@ impl Includes {
             )));
         }
         self.count += 1;
-        let Ok(path) = file.canonicalize() else {
+        let Some(path) = file.canonicalize().ok().filter(|path| !path.is_dir()) else {
             return Ok(false);
         };
-        if path.is_dir() {
-            return Ok(false);
-        }
         if let Some(first) = self.open.iter().position(|open| *open == path) {
             let names: Vec<String> = self.open[first..]
                 .iter()
@@ -95,9 +97,10 @@ impl Includes {
                 names.join(" -> ")
             )));
         }
-        if self.open.len() == MAX_DEPTH {
+        if self.open.len() == limits::DEPTH {
             return Err(place.invalid(format!(
-                "files include each other more than {MAX_DEPTH} deep; include them from fewer levels"
+                "files include each other more than {} deep; include them from fewer levels",
+                limits::DEPTH
             )));
         }
         if !self.open.is_empty() {
@@ -107,53 +110,44 @@ impl Includes {
         Ok(true)
     }
 
-    /// The files that were included, without the scene's own.
-    pub(super) fn found(&mut self) -> Vec<PathBuf> {
-        std::mem::take(&mut self.found).into_iter().collect()
-    }
-
-    /// Closes the innermost file.
-    pub(super) fn leave(&mut self) {
-        self.open.pop();
-    }
-
-    /// The text of a file that `place` asks for.
-    pub(super) fn text(&self, file: &Path, place: &Place) -> Result<String, SceneError> {
-        let text = input::read_text(file, self.text.limit()).map_err(|error| {
-            let place = Place::file(file);
-            match error.kind() {
-                io::ErrorKind::FileTooLarge => place.too_large(spent(&self.text)),
-                _ => place.io(error),
+    /// The text of a file, unpacked, without its byte order mark.
+    fn text(&self, file: &Path, place: &Place) -> Result<Vec<u8>> {
+        let mut text = Vec::new();
+        // One byte more is refused.
+        let most = self.text.left() + 1;
+        let read = match file.extension().is_some_and(|extension| extension == "gz") {
+            true => input::open(file, u64::MAX)
+                .and_then(|file| MultiGzDecoder::new(file).take(most).read_to_end(&mut text)),
+            false => {
+                input::open(file, most).and_then(|file| file.take(most).read_to_end(&mut text))
             }
-        })?;
+        };
+        match read {
+            Err(error) if error.kind() == io::ErrorKind::FileTooLarge => {
+                return Err(place.too_large(format!(
+                    "{}; {} is the last file",
+                    self.spent(),
+                    file.display()
+                )));
+            }
+            read => read.map_err(|error| Place::file(file).io(error))?,
+        };
         self.charge(text.len(), place)?;
+        let mark = text.len() - input::unmarked(&text).len();
+        text.drain(..mark);
         Ok(text)
     }
 
     /// Takes bytes that `place` adds to the text from what may still be read.
-    pub(super) fn charge(&self, bytes: usize, place: &Place) -> Result<(), SceneError> {
-        if self.text.take(bytes as u64) { Ok(()) } else { Err(place.too_large(spent(&self.text))) }
+    pub(super) fn charge(&self, bytes: usize, place: &Place) -> Result<()> {
+        if self.text.take(bytes as u64) { Ok(()) } else { Err(place.too_large(self.spent())) }
     }
 
-    /// A reader of text that counts what it reads.
-    pub(super) fn metered<R: Read>(&self, input: R) -> Metered<R> {
-        Metered { input, budget: self.text.clone() }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn readers_share_what_is_left() {
-        let includes = Includes::new(3 << 20);
-        let read = |count: u64| {
-            io::copy(&mut includes.metered(io::repeat(b' ').take(count)), &mut io::sink())
-        };
-        assert_eq!(read(2 << 20).unwrap(), 2 << 20);
-        let error = read(u64::MAX).unwrap_err().to_string();
-        assert!(error.contains("more than 3 MiB"), "{error}");
-        assert!(includes.charge(1, &Place::file(Path::new("a"))).is_err());
+    fn spent(&self) -> String {
+        format!(
+            "the scene has more than {} MiB of text, with all that is included and substituted; \
+             load a file that has the materials alone",
+            self.text.limit() >> 20
+        )
     }
 }

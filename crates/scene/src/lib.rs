@@ -25,7 +25,7 @@
 //! limits of size.
 //!
 //! Scenes far larger than any that exist are refused, with the limit: reading ends within seconds
-//! and 1 GB of memory, whatever a file holds. Only regular files are read.
+//! and about 1 GB of memory, whatever a file holds. Only regular files are read.
 //!
 //! [pbrt-v4]: https://pbrt.org/fileformat-v4
 //! [Mitsuba 3]: https://mitsuba.readthedocs.io/en/stable/src/plugin_reference/plugins_bsdfs.html
@@ -33,14 +33,14 @@
 //! [MaterialX]: https://materialx.org/Specification.html
 
 mod builder;
-mod cycle;
+mod fresnel;
 mod gltf;
 mod include;
 mod limits;
 mod materialx;
-mod memo;
 mod mitsuba;
 mod pbrt;
+mod references;
 pub mod survey;
 mod texture;
 mod xml;
@@ -49,6 +49,9 @@ use std::path::Path;
 
 use microfacet_baker::input;
 use microfacet_baker::scene::{Format, Place, Scene, SceneError, SceneErrorKind};
+
+/// What reads a part of a scene.
+type Result<T, E = SceneError> = std::result::Result<T, E>;
 
 /// Reads the scene description in `path`; the extension determines the format.
 ///

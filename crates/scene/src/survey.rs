@@ -77,18 +77,13 @@ pub fn group(verdict: &Verdict) -> &'static str {
     }
 }
 
-/// A file that was read, before it is known which others include it.
-struct Read {
-    file: File,
-    needs: Needs,
-    included: Vec<PathBuf>,
-}
-
-/// What a scene needs, and what was not asked for.
+/// What reading a file gave besides its outcome.
 #[derive(Default)]
-struct Needs {
-    all: Vec<(String, Need)>,
+struct Read {
+    needs: Vec<(String, Need)>,
+    /// What was not asked for.
     offered: Vec<(String, Need)>,
+    included: Vec<PathBuf>,
 }
 
 impl Survey {
@@ -102,7 +97,7 @@ impl Survey {
         meter: &Meter,
     ) -> Self {
         let mut paths: Vec<PathBuf> = Vec::new();
-        let mut unread: Vec<Read> = Vec::new();
+        let mut unread: Vec<File> = Vec::new();
         let hidden = |name: &std::ffi::OsStr| name.as_encoded_bytes().starts_with(b".");
         let all = WalkDir::new(folder).sort_by_file_name().into_iter();
         // The folder itself may be named "." or "..".
@@ -110,8 +105,10 @@ impl Survey {
             match entry {
                 Ok(entry) if entry.file_type().is_file() => paths.push(entry.into_path()),
                 Ok(_) => {}
-                Err(why) => unread
-                    .push(Read::refused(why.path().unwrap_or(folder).to_owned(), why.to_string())),
+                Err(why) => unread.push(File {
+                    path: why.path().unwrap_or(folder).to_owned(),
+                    outcome: Outcome::Refused(why.to_string()),
+                }),
             }
         }
         paths.retain(|path| Format::of(path).is_some());
@@ -119,21 +116,21 @@ impl Survey {
         let stage = meter.stage(paths.len() as f64);
         stage.split(paths.len());
         let read = paths.into_par_iter().map(|path| {
-            let read = Read::new(path, per_set, options, target);
+            let (outcome, read) = read(&path, per_set, options, target);
             stage.step();
-            read
+            (File { path, outcome }, read)
         });
-        let mut read: Vec<Read> = read.collect();
-        read.append(&mut unread);
+        let mut read: Vec<(File, Read)> = read.collect();
+        read.extend(unread.into_iter().map(|file| (file, Read::default())));
         let included: HashSet<PathBuf> =
-            read.iter_mut().flat_map(|read| std::mem::take(&mut read.included)).collect();
+            read.iter().flat_map(|(_, read)| read.included.iter().cloned()).collect();
         let mut survey = Self::default();
-        for Read { mut file, needs, .. } in read {
+        for (mut file, Read { needs, offered, .. }) in read {
             if file.path.canonicalize().is_ok_and(|path| included.contains(&path)) {
                 file.outcome = Outcome::Part;
             } else {
-                survey.needs.extend(needs.all);
-                survey.offered.extend(needs.offered);
+                survey.needs.extend(needs);
+                survey.offered.extend(offered);
             }
             survey.files.push(file);
         }
@@ -152,70 +149,53 @@ impl Survey {
     }
 }
 
-impl Read {
-    fn refused(path: PathBuf, why: String) -> Self {
-        let file = File { path, outcome: Outcome::Refused(why) };
-        Self { file, needs: Needs::default(), included: Vec::new() }
-    }
-
-    fn new(path: PathBuf, per_set: usize, options: Options, target: Target) -> Self {
-        let scene = match crate::load(&path) {
-            Ok(scene) => scene,
-            Err(error) if matches!(error.kind, SceneErrorKind::Foreign(_)) => {
-                let outcome = Outcome::Foreign(error.to_string());
-                let file = File { path, outcome };
-                return Self { file, needs: Needs::default(), included: Vec::new() };
-            }
-            Err(error) => return Self::refused(path, error.to_string()),
-        };
-        let included = scene.included.clone();
-        if let Some(doubt) = scene.doubts().next().filter(|_| options.strict) {
-            return Self { included, ..Self::refused(path, doubt) };
+fn read(path: &Path, per_set: usize, options: Options, target: Target) -> (Outcome, Read) {
+    let mut read = Read::default();
+    let outcome = match crate::load(path) {
+        Ok(scene) => {
+            read.included = scene.included.clone();
+            let planned = planned(scene, per_set, options, target, &mut read);
+            planned.map_or_else(Outcome::Refused, Outcome::Planned)
         }
-        match Planned::new(scene, per_set, options, target) {
-            Ok((planned, needs)) => {
-                let file = File { path, outcome: Outcome::Planned(planned) };
-                Self { file, needs, included }
-            }
-            Err(why) => Self { included, ..Self::refused(path, why) },
-        }
-    }
+        Err(error) => match error.kind {
+            SceneErrorKind::Foreign(_) => Outcome::Foreign(error.to_string()),
+            _ => Outcome::Refused(error.to_string()),
+        },
+    };
+    (outcome, read)
 }
 
-impl Planned {
-    /// A scene as it is planned, with what it needs; the error says why it is refused.
-    fn new(
-        scene: Scene,
-        per_set: usize,
-        options: Options,
-        target: Target,
-    ) -> Result<(Self, Needs), String> {
-        let library = Library::new(scene, per_set, options).map_err(|why| why.to_string())?;
-        let needs = Needs {
-            all: library.needs(target).map_err(|why| why.to_string())?,
-            // What no table can hold is refused where it is asked for.
-            offered: library.offered(target).unwrap_or_default(),
-        };
-        let ids = |needs: &[(String, Need)]| needs.iter().map(|(id, _)| id.clone()).collect();
-        let (all, offered) = (ids(&needs.all), ids(&needs.offered));
-        let mut planned = Self { needs: all, offered, ..Self::default() };
-        for (scene, plan) in library.plans() {
-            planned.warnings.extend(scene.warnings.iter().cloned());
-            for material in &scene.ignored {
-                if material.understood {
-                    planned.without_lobe += 1;
-                } else {
-                    planned.not_understood.push(material.clone());
-                }
-            }
-            for verdict in &plan.verdicts {
-                *planned.lobes.entry(group(verdict)).or_default() += 1;
-            }
-            for why in plan.not_covered() {
-                let name = why.material().unwrap_or_default().to_owned();
-                planned.not_covered.push([name, why.reason()]);
-            }
-        }
-        Ok((planned, needs))
+/// A scene as it is planned, with what it needs in `read`; the error says why it is refused.
+fn planned(
+    scene: Scene,
+    per_set: usize,
+    options: Options,
+    target: Target,
+    read: &mut Read,
+) -> Result<Planned, String> {
+    if let Some(doubt) = scene.doubts().next().filter(|_| options.strict) {
+        return Err(doubt);
     }
+    let library = Library::new(scene, per_set, options).map_err(|why| why.to_string())?;
+    read.needs = library.needs(target).map_err(|why| why.to_string())?;
+    // What no table can hold is refused where it is asked for.
+    read.offered = library.offered(target).unwrap_or_default();
+    let ids = |needs: &[(String, Need)]| needs.iter().map(|(id, _)| id.clone()).collect();
+    let (needs, offered) = (ids(&read.needs), ids(&read.offered));
+    let mut planned = Planned { needs, offered, ..Planned::default() };
+    for (scene, plan) in library.plans() {
+        planned.warnings.extend(scene.warnings.iter().cloned());
+        let (understood, not_understood): (Vec<_>, Vec<_>) =
+            scene.ignored.iter().cloned().partition(|material| material.understood);
+        planned.without_lobe += understood.len();
+        planned.not_understood.extend(not_understood);
+        for verdict in &plan.verdicts {
+            *planned.lobes.entry(group(verdict)).or_default() += 1;
+        }
+        for why in plan.not_covered() {
+            let name = why.material().unwrap_or_default().to_owned();
+            planned.not_covered.push([name, why.reason()]);
+        }
+    }
+    Ok(planned)
 }

@@ -1,12 +1,10 @@
 //! Ranges of the values in images.
 
 use std::collections::HashMap;
-use std::collections::hash_map::Entry;
-use std::hash::Hash;
 use std::io::{self, Cursor};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
+use image::{DynamicImage, ImageDecoder, ImageReader, Limits};
 
 use microfacet_baker::input;
 use microfacet_tables::Interval;
@@ -41,45 +39,40 @@ pub(super) enum Encoding {
 }
 
 /// Ranges of images, each read once for a channel, until they come to [`limits::IMAGES`].
-pub(super) struct Textures<K> {
-    ranges: HashMap<(K, Channel, Encoding), Result<Interval, String>>,
+pub(super) struct Textures {
+    ranges: HashMap<(PathBuf, Channel, Encoding), Result<Interval, String>>,
     left: Budget,
 }
 
-impl<K> Default for Textures<K> {
+impl Default for Textures {
     fn default() -> Self {
         Self { ranges: HashMap::new(), left: Budget::new(limits::IMAGES) }
     }
 }
 
-impl<K: Eq + Hash> Textures<K> {
+impl Textures {
     /// The smallest interval that holds the values of all pixels; filtering stays inside it.
     ///
-    /// `read` gives the bytes of the image `key`, and takes from the budget what it reads for them.
-    /// The error completes the sentence "texture x ...".
+    /// `read` gives the bytes of the image that `key` stands for, and takes from the budget what it
+    /// reads for them. The error completes the sentence "texture x ...".
     pub(super) fn range(
         &mut self,
-        key: K,
+        key: &Path,
         channel: Channel,
         encoding: Encoding,
-        read: impl FnOnce(&K, &Budget) -> io::Result<Vec<u8>>,
+        read: impl FnOnce(&Budget) -> io::Result<Vec<u8>>,
     ) -> Result<Interval, String> {
-        let left = &self.left;
-        match self.ranges.entry((key, channel, encoding)) {
-            Entry::Occupied(known) => known.get().clone(),
-            Entry::Vacant(place) => {
-                let range = read(&place.key().0, left)
-                    .map_err(|error| format!("cannot be read ({error})"))
-                    .and_then(|bytes| range(&bytes, channel, encoding, left));
-                place.insert(range).clone()
-            }
-        }
+        let compute = || {
+            let bytes = read(&self.left).map_err(|error| format!("cannot be read ({error})"))?;
+            range(&bytes, channel, encoding, &self.left)
+        };
+        self.ranges.entry((key.to_owned(), channel, encoding)).or_insert_with(compute).clone()
     }
 }
 
 /// Reads an image file.
 pub(super) fn file(path: &Path, left: &Budget) -> io::Result<Vec<u8>> {
-    let bytes = input::read(path, limits::IMAGE_FILE)?;
+    let bytes = input::read(path, limits::IMAGE)?;
     charge(left, bytes.len() as u64)?;
     Ok(bytes)
 }
@@ -89,10 +82,8 @@ pub(super) fn charge(left: &Budget, bytes: u64) -> io::Result<()> {
     if left.take(bytes) {
         return Ok(());
     }
-    Err(io::Error::new(
-        io::ErrorKind::FileTooLarge,
-        format!("the images of the scene come to more than {} GiB", limits::IMAGES >> 30),
-    ))
+    let why = format!("the images of the scene come to more than {} GiB", limits::IMAGES >> 30);
+    Err(io::Error::new(io::ErrorKind::FileTooLarge, why))
 }
 
 /// As [`Textures::range`], for the bytes of an image.
@@ -104,7 +95,6 @@ fn range(
 ) -> Result<Interval, String> {
     let image = decode(bytes, left)?;
     let stride = usize::from(image.color().channel_count());
-    let pixels = Pixels { channel, stride };
     let decode = |x: f64| match encoding {
         Encoding::Srgb if channel != Channel::Alpha => srgb_to_linear(x),
         _ => x,
@@ -112,13 +102,13 @@ fn range(
     // Integer samples go through a table: a power for each sample would take seconds.
     if let Some(samples) = image.as_flat_samples_u8() {
         let table: Vec<f64> = (0..=255u8).map(|i| decode(f64::from(i) / 255.0)).collect();
-        pixels.range(samples.samples, |x| table[usize::from(x)])
+        range_of(samples.samples, stride, channel, |x| table[usize::from(x)])
     } else if let Some(samples) = image.as_flat_samples_u16() {
         let table: Vec<f64> = (0..=u16::MAX).map(|i| decode(f64::from(i) / 65535.0)).collect();
-        pixels.range(samples.samples, |x| table[usize::from(x)])
+        range_of(samples.samples, stride, channel, |x| table[usize::from(x)])
     } else {
         let samples = image.as_flat_samples_f32().ok_or("has no samples")?;
-        pixels.range(samples.samples, f64::from)
+        range_of(samples.samples, stride, channel, f64::from)
     }
 }
 
@@ -127,14 +117,12 @@ fn decode(bytes: &[u8], left: &Budget) -> Result<DynamicImage, String> {
     let mut image = ImageReader::new(Cursor::new(bytes))
         .with_guessed_format()
         .map_err(|error| format!("cannot be read ({error})"))?;
-    // Decoders of other formats hold the pixels twice.
-    let copies = if image.format() == Some(ImageFormat::Png) { 1 } else { 2 };
     let mut allowed = Limits::default();
     allowed.max_alloc = Some(limits::IMAGE);
     image.limits(allowed);
     let decoder = image.into_decoder().map_err(undecoded)?;
     let size = decoder.total_bytes();
-    if size.saturating_mul(copies) > limits::IMAGE {
+    if size > limits::IMAGE {
         let (width, height) = decoder.dimensions();
         return Err(format!(
             "has {width} x {height} pixels, which take more than {} MiB to decode",
@@ -145,36 +133,36 @@ fn decode(bytes: &[u8], left: &Budget) -> Result<DynamicImage, String> {
     DynamicImage::from_decoder(decoder).map_err(undecoded)
 }
 
-struct Pixels {
-    channel: Channel,
+/// The range of a channel of samples that `value` decodes, in pixels of `stride` samples.
+fn range_of<T: Copy>(
+    samples: &[T],
     stride: usize,
-}
-
-impl Pixels {
-    fn range<T: Copy>(&self, samples: &[T], value: impl Fn(T) -> f64) -> Result<Interval, String> {
-        let grey = self.stride < 3;
-        let has_alpha = self.stride.is_multiple_of(2);
-        let pixels = samples.chunks_exact(self.stride);
-        let of_channel = |index: usize| Interval::hull(pixels.clone().map(|p| value(p[index])));
-        match self.channel {
-            Channel::Alpha if has_alpha => of_channel(self.stride - 1),
-            Channel::Alpha => Some(Interval::point(1.0)),
-            Channel::Green if !grey => of_channel(1),
-            Channel::Blue if !grey => of_channel(2),
-            Channel::Luminance if !grey => Interval::hull(
-                pixels.map(|p| 0.2126 * value(p[0]) + 0.7152 * value(p[1]) + 0.0722 * value(p[2])),
-            ),
-            Channel::AlphaOrMean if !grey => {
-                if has_alpha && pixels.clone().any(|p| value(p[3]) != 1.0) {
-                    of_channel(3)
-                } else {
-                    Interval::hull(pixels.map(|p| (value(p[0]) + value(p[1]) + value(p[2])) / 3.0))
-                }
-            }
-            _ => of_channel(0),
+    channel: Channel,
+    value: impl Fn(T) -> f64,
+) -> Result<Interval, String> {
+    let grey = stride < 3;
+    let has_alpha = stride.is_multiple_of(2);
+    let pixels = samples.chunks_exact(stride);
+    let of_channel = |index: usize| Interval::hull(pixels.clone().map(|p| value(p[index])));
+    match channel {
+        Channel::Alpha if has_alpha => of_channel(stride - 1),
+        Channel::Alpha => Some(Interval::point(1.0)),
+        Channel::Green if !grey => of_channel(1),
+        Channel::Blue if !grey => of_channel(2),
+        Channel::Luminance if !grey => Interval::hull(
+            pixels.map(|p| 0.2126 * value(p[0]) + 0.7152 * value(p[1]) + 0.0722 * value(p[2])),
+        ),
+        Channel::AlphaOrMean
+            if !grey && has_alpha && pixels.clone().any(|p| value(p[3]) != 1.0) =>
+        {
+            of_channel(3)
         }
-        .ok_or_else(|| "is empty or holds NaN".to_owned())
+        Channel::AlphaOrMean if !grey => {
+            Interval::hull(pixels.map(|p| (value(p[0]) + value(p[1]) + value(p[2])) / 3.0))
+        }
+        _ => of_channel(0),
     }
+    .ok_or_else(|| "is empty or holds NaN".to_owned())
 }
 
 /// IEC 61966-2-1. The `libm` power keeps the roughness, and so the tables, equal on every system.
@@ -237,37 +225,28 @@ mod tests {
     fn what_is_no_image_is_said_to_be_none() {
         let error = read(b"no image", Channel::Red, Encoding::Linear).unwrap_err();
         assert!(error.contains("cannot be decoded"), "{error}");
-        let error = Textures::default()
-            .range(Path::new("absent.png"), Channel::Red, Encoding::Linear, |path, left| {
-                file(path, left)
-            })
-            .unwrap_err();
-        assert!(error.contains("cannot be read"), "{error}");
+        let absent = Path::new("absent.png");
+        let read = |left: &Budget| file(absent, left);
+        let error = Textures::default().range(absent, Channel::Red, Encoding::Linear, read);
+        assert!(error.as_ref().is_err_and(|why| why.contains("cannot be read")), "{error:?}");
     }
 
     #[test]
     fn an_image_is_read_once_and_only_while_the_scene_may_have_more() {
-        let mut textures = Textures { ranges: HashMap::new(), left: Budget::new(200) };
-        let mut range = |key: u32| {
-            textures.range(key, Channel::Red, Encoding::Linear, |_, left| {
-                charge(left, png().len() as u64).map(|()| png())
-            })
-        };
-        assert!(png().len() < 200);
-        for _ in 0..9 {
-            assert!(range(1).is_ok());
+        // What was read counts, also if it is no image.
+        for (bytes, read_once) in [(png(), true), (b"no image".repeat(11), false)] {
+            let mut textures = Textures { left: Budget::new(200), ..Textures::default() };
+            let mut range = |key: usize| {
+                let read = |left: &Budget| charge(left, bytes.len() as u64).map(|()| bytes.clone());
+                textures.range(Path::new(&"x".repeat(key)), Channel::Red, Encoding::Linear, read)
+            };
+            assert!(bytes.len() < 100);
+            for _ in 0..9 {
+                assert_eq!(range(1).is_ok(), read_once);
+            }
+            let errors: Vec<String> = (2..9).filter_map(|key| range(key).err()).collect();
+            assert!(errors.iter().any(|error| error.contains("come to more than")), "{errors:?}");
         }
-        let error = (2..9).find_map(|key| range(key).err()).unwrap();
-        assert!(error.contains("come to more than"), "{error}");
-        // What was read counts, though it is no image.
-        let mut textures = Textures { ranges: HashMap::new(), left: Budget::new(200) };
-        let mut range = |key: u32| {
-            textures.range(key, Channel::Red, Encoding::Linear, |_, left| {
-                charge(left, 90).map(|()| b"no image".to_vec())
-            })
-        };
-        let errors = [1, 2, 3].map(|key| range(key).unwrap_err());
-        assert!(errors[1].contains("decoded") && errors[2].contains("come to more"), "{errors:?}");
     }
 
     #[test]

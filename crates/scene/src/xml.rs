@@ -1,27 +1,27 @@
 //! XML as a tree of owned elements with their places, shared by the readers of Mitsuba and
 //! MaterialX.
-
-mod mended;
+//!
+//! The parsers of renderers check no namespaces, take a raw "<" or "&" in an attribute as a
+//! character, and a declaration wherever it stands. Documents of MaterialX have all of these:
+//! prefixes that nothing declares, tokens such as `<UDIM>` in file names, "this & that" in a
+//! description, and a space before `<?xml`. So they are read here, too.
 
 use std::hash::{Hash, Hasher};
 use std::io;
 use std::path::Path;
 
-use mended::Mended;
-use roxmltree::{Document, Node, ParsingOptions};
+use quick_xml::Error;
+use quick_xml::escape::unescape;
+use quick_xml::events::{BytesStart, Event};
 
-use microfacet_baker::input;
 use microfacet_baker::scene::{Lines, Place, SceneError, SceneErrorKind};
 
-use super::builder::Builder;
-use super::include::{Includes, absent};
-use crate::limits;
-use crate::limits::Budget;
+use crate::Result;
+use crate::builder::Builder;
+use crate::include::Includes;
+use crate::limits::{self, Budget};
 
-/// Deeper nesting than this is refused as a mistake, which bounds the stack for the recursion.
-pub(super) const MAX_DEPTH: usize = 256;
-
-/// An element, without text, comments and namespaces.
+/// An element, without text, comments and namespaces. It equals itself alone.
 #[derive(Debug)]
 pub(super) struct Element {
     pub(super) tag: String,
@@ -30,13 +30,27 @@ pub(super) struct Element {
     pub(super) place: Place,
 }
 
+impl PartialEq for Element {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self, other)
+    }
+}
+
+impl Eq for Element {}
+
+impl Hash for Element {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        std::ptr::from_ref(self).hash(state);
+    }
+}
+
 impl Element {
     pub(super) fn attribute(&self, name: &str) -> Option<&str> {
         self.attributes.iter().find_map(|(key, value)| (key == name).then_some(&value[..]))
     }
 
     /// The attribute `name`, whose absence is an error.
-    pub(super) fn required(&self, name: &str) -> Result<&str, SceneError> {
+    pub(super) fn required(&self, name: &str) -> Result<&str> {
         self.attribute(name).ok_or_else(|| {
             self.place.invalid(format!("<{}> has no attribute \"{name}\"", self.tag))
         })
@@ -47,9 +61,11 @@ impl Element {
         self.children.iter().find(|child| child.attribute("name") == Some(name))
     }
 
-    /// The element as a key, distinguished by its address.
-    pub(super) fn key(&self) -> Key<'_> {
-        Key(self)
+    /// This element and all its descendants of a tag, in document order.
+    pub(super) fn all(&self, tag: &str) -> Vec<&Element> {
+        let mut found = Vec::new();
+        self.walk(&mut |element| found.extend(Some(element).filter(|it| it.tag == tag)));
+        found
     }
 
     /// Calls `visit` for this element and all its descendants, in document order.
@@ -61,47 +77,27 @@ impl Element {
     }
 }
 
-/// An element that equals itself alone.
-#[derive(Clone, Copy)]
-pub(super) struct Key<'a>(pub(super) &'a Element);
-
-impl PartialEq for Key<'_> {
-    fn eq(&self, other: &Self) -> bool {
-        std::ptr::eq(self.0, other.0)
-    }
-}
-
-impl Eq for Key<'_> {}
-
-impl Hash for Key<'_> {
-    fn hash<H: Hasher>(&self, state: &mut H) {
-        std::ptr::from_ref(self.0).hash(state);
-    }
-}
-
 /// Reads XML files of one scene, which share the limits of size.
 pub(super) struct Reader {
     pub(super) includes: Includes,
-    nodes: Budget,
-    values: Budget,
+    /// Elements and attributes.
+    parts: Budget,
 }
 
 impl Reader {
     pub(super) fn new() -> Self {
-        Self {
-            includes: Includes::new(limits::XML),
-            nodes: Budget::new(limits::XML_NODES),
-            values: Budget::new(limits::XML_VALUES),
-        }
+        Self { includes: Includes::new(limits::TEXT), parts: Budget::new(limits::XML_PARTS) }
     }
 
-    /// Reads the root element of the scene's own file.
-    pub(super) fn open(&mut self, file: &Path) -> Result<Element, SceneError> {
-        let place = Place::file(file);
-        // A folder, which is no error of an include here.
-        input::open(file, u64::MAX).map_err(|error| place.io(error))?;
-        self.includes.enter(file, &place)?;
-        self.read(file, &place)
+    /// Reads the root element of the scene's own file, which has one of these tags.
+    pub(super) fn open(&mut self, file: &Path, tags: &[&str], of: &str) -> Result<Element> {
+        let text = self.includes.open(file)?;
+        let root = self.root(file, text)?;
+        if tags.contains(&&root.tag[..]) {
+            return Ok(root);
+        }
+        let tag = &root.tag;
+        Err(root.place.foreign(format!("<{tag}> is not the root of {of}; expected <{}>", tags[0])))
     }
 
     /// Reads the root element of a file that `place` includes under a name, to be followed by
@@ -115,63 +111,115 @@ impl Reader {
         place: &Place,
         builder: &mut Builder,
         said: &str,
-    ) -> Result<Option<Element>, SceneError> {
-        let why = if self.includes.enter(file, place)? {
-            match self.read(file, place) {
-                Err(error) if is_malformed(&error) => {
-                    self.includes.leave();
-                    format!("{name} is not well formed: {error}")
-                }
-                read => return read.map(Some),
+    ) -> Result<Option<Element>> {
+        let text = self.includes.include((name, file), place, builder, said)?;
+        let Some(text) = text else { return Ok(None) };
+        match self.root(file, text) {
+            Err(error) if is_malformed(&error) => {
+                self.includes.leave();
+                builder.warn(place, format!("{name} is not well formed: {error}; {said}"));
+                Ok(None)
             }
-        } else {
-            absent(name, file)
-        };
-        builder.warn(place, format!("{why}; {said}"));
-        Ok(None)
-    }
-
-    /// Reads the root element of a file that `place` asks for.
-    fn read(&mut self, file: &Path, place: &Place) -> Result<Element, SceneError> {
-        let source = self.includes.text(file, place)?;
-        let lines = Lines::new(file, source.as_bytes());
-        let mut text = Mended::new(&source);
-        loop {
-            let attributes = check_attributes(&text, &lines)?;
-            let nodes_limit = u32::try_from(self.nodes.left()).unwrap_or(u32::MAX);
-            let options = ParsingOptions { nodes_limit, ..ParsingOptions::default() };
-            let error = match Document::parse_with_options(text.text(), options) {
-                Ok(document) => {
-                    if !self.values.take(attributes) {
-                        return Err(Place::file(file).too_large(format!(
-                            "the scene has more than {} attributes; load a file that has the \
-                             materials alone",
-                            limits::XML_VALUES
-                        )));
-                    }
-                    self.nodes.take(document.descendants().count() as u64);
-                    return element(document.root_element(), &text, &lines, 0);
-                }
-                Err(error) => error,
-            };
-            if matches!(error, roxmltree::Error::NodesLimitReached) {
-                return Err(Place::file(file).too_large(format!(
-                    "the scene has more than {} elements, comments and texts; load a file that has \
-                     the materials alone",
-                    limits::XML_NODES
-                )));
-            }
-            if !text.mend(&error) {
-                // The message has the place before it already.
-                let at = format!(" at {}", error.pos());
-                return Err(lines
-                    .place(text.offset(error.pos()))
-                    .syntax(error.to_string().trim_end_matches(&at)));
-            }
-            // Parsing once more counts as much as reading once more.
-            self.includes.charge(source.len(), place)?;
+            read => read.map(Some),
         }
     }
+
+    /// The root element of a text.
+    fn root(&self, file: &Path, text: Vec<u8>) -> Result<Element> {
+        let text = String::from_utf8(text).map_err(|_| {
+            let why = "is no text in UTF-8";
+            Place::file(file).io(io::Error::new(io::ErrorKind::InvalidData, why))
+        })?;
+        let lines = Lines::new(file, text.as_bytes());
+        let mut xml = quick_xml::Reader::from_str(&text);
+        xml.config_mut().expand_empty_elements = true;
+        xml.config_mut().allow_dangling_amp = true;
+        // From the root to the innermost element.
+        let mut open: Vec<Element> = Vec::new();
+        let mut root = None;
+        loop {
+            let place = lines.place(xml.buffer_position() as usize);
+            let event = xml.read_event().map_err(|error| {
+                let why = match error {
+                    Error::Syntax(why) => why.to_string(),
+                    Error::IllFormed(why) => why.to_string(),
+                    other => other.to_string(),
+                };
+                lines.place(xml.error_position() as usize).syntax(why)
+            })?;
+            match event {
+                Event::Start(_) if open.is_empty() && root.is_some() => {
+                    return Err(place.syntax("a second element follows the root"));
+                }
+                Event::Start(_) if open.len() == limits::DEPTH => return Err(too_deep(&place)),
+                Event::Start(tag) => open.push(self.element(&tag, place)?),
+                Event::End(_) => {
+                    let ended = open.pop();
+                    match open.last_mut() {
+                        Some(outer) => outer.children.extend(ended),
+                        None => root = ended,
+                    }
+                }
+                Event::Eof => {
+                    if let Some(Element { tag, place, .. }) = open.last() {
+                        return Err(place.syntax(format!("<{tag}> has no end")));
+                    }
+                    return root.ok_or_else(|| place.syntax("there is no element"));
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// An element that begins here, without its children.
+    fn element(&self, tag: &BytesStart<'_>, place: Place) -> Result<Element> {
+        let mut attributes = Vec::new();
+        self.take(&place)?;
+        // The checks compare each with each.
+        for attribute in tag.attributes().with_checks(false) {
+            let attribute = attribute.map_err(|error| place.syntax(error.to_string()))?;
+            self.take(&place)?;
+            if attribute.key.as_namespace_binding().is_none() {
+                let name = attribute.key.local_name().into_inner().to_owned();
+                attributes.push((name, unescaped(&attribute.value)));
+            }
+        }
+        let tag = tag.local_name().into_inner().to_owned();
+        Ok(Element { tag, attributes, children: Vec::new(), place })
+    }
+
+    /// Counts an element or an attribute.
+    fn take(&self, place: &Place) -> Result<()> {
+        if self.parts.take(1) {
+            return Ok(());
+        }
+        Err(place.too_large(format!(
+            "the scene has more than {} elements and attributes; load a file that has the \
+             materials alone",
+            limits::XML_PARTS
+        )))
+    }
+}
+
+/// The value of an attribute, in which an ampersand that begins no reference stands for itself.
+fn unescaped(value: &str) -> String {
+    let value = value.replace("\r\n", " ").replace(['\t', '\n', '\r'], " ");
+    let mut parts = value.split('&');
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (name, rest) = part.split_once(';').unwrap_or_default();
+        match unescape(&format!("&{name};")) {
+            Ok(character) => {
+                text += &character;
+                text += rest;
+            }
+            Err(_) => {
+                text.push('&');
+                text += part;
+            }
+        }
+    }
+    text
 }
 
 /// Whether the error is one of the text in a file: of its grammar, or that it is none.
@@ -183,57 +231,20 @@ fn is_malformed(error: &SceneError) -> bool {
     }
 }
 
-/// Checks what the parser takes quadratic time for, and counts the attributes, at least.
-fn check_attributes(text: &Mended<'_>, lines: &Lines<'_>) -> Result<u64, SceneError> {
-    // No attribute holds this character, so that a piece has one element at most; each of its
-    // attributes has two quotes.
-    let (mut start, mut all) = (0, 0);
-    for piece in text.text().split('<') {
-        let quotes = piece.bytes().filter(|byte| matches!(byte, b'"' | b'\'')).count();
-        if quotes > 2 * limits::XML_ATTRIBUTES {
-            return Err(lines.place(text.original(start)).too_large(format!(
-                "there are {quotes} quotes before the next \"<\"; an element may have {} attributes",
-                limits::XML_ATTRIBUTES
-            )));
-        }
-        start += piece.len() + 1;
-        all += quotes as u64;
-    }
-    match text.text().match_indices("xmlns").nth(limits::XML_NAMESPACES) {
-        Some((at, _)) => Err(lines.place(text.original(at)).too_large(format!(
-            "the file declares more than {} namespaces; declare each once",
-            limits::XML_NAMESPACES
-        ))),
-        None => Ok(all / 2),
-    }
-}
-
-fn element(
-    node: Node<'_, '_>,
-    text: &Mended<'_>,
-    lines: &Lines<'_>,
-    depth: usize,
-) -> Result<Element, SceneError> {
-    let place = lines.place(text.original(node.range().start));
-    if depth == MAX_DEPTH {
-        return Err(too_deep(&place));
-    }
-    Ok(Element {
-        tag: node.tag_name().name().to_owned(),
-        attributes: node
-            .attributes()
-            .map(|attribute| (attribute.name().to_owned(), attribute.value().to_owned()))
-            .collect(),
-        children: node
-            .children()
-            .filter(Node::is_element)
-            .map(|child| element(child, text, lines, depth + 1))
-            .collect::<Result<_, _>>()?,
-        place,
-    })
-}
-
-/// The error for elements that are nested more than [`MAX_DEPTH`] deep.
+/// The error for elements that are nested too deep.
 pub(super) fn too_deep(place: &Place) -> SceneError {
-    place.syntax(format!("elements are nested more than {MAX_DEPTH} deep"))
+    place.syntax(format!("elements are nested more than {} deep", limits::DEPTH))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::unescaped;
+
+    #[test]
+    fn an_ampersand_may_begin_a_reference() {
+        assert_eq!(unescaped("&amp;&lt;&gt;&quot;&apos;&#38;&#x26;&#xaF;é"), "&<>\"'&&¯é");
+        let raw = "& &&nbsp;&amp &#;&#x;&#38&#3a;&#xg;&ampere;&";
+        assert_eq!(unescaped(raw), raw);
+        assert_eq!(unescaped("a\r\nb\tc\n&amp;"), "a b c &");
+    }
 }

@@ -7,8 +7,7 @@ use crate::load;
 
 /// The Fresnel term of a material with these factors and extensions.
 fn fresnel(pbr: &str, extensions: &str) -> Option<Reflectance> {
-    let material =
-        format!("{{\"pbrMetallicRoughness\": {{{pbr}}}, \"extensions\": {{{extensions}}}}}");
+    let material = format!("{{'pbrMetallicRoughness': {{{pbr}}}, 'extensions': {{{extensions}}}}}");
     let scene = load("a.gltf", &document(&material, ""));
     assert_eq!(scene.warnings, [""; 0]);
     scene.materials[0].fresnel
@@ -23,9 +22,9 @@ fn assert_f0(pbr: &str, extensions: &str, wanted: [f64; 3]) {
     assert!(f0.iter().zip(wanted).all(|(f0, wanted)| (f0 - wanted).abs() < 1e-15), "{f0:?}");
 }
 
-const COPPER: &str = "\"baseColorFactor\": [0.9, 0.6, 0.5, 1]";
-const GLASS: &str = "\"metallicFactor\": 0";
-const TEXTURE: &str = "{\"index\": 0}";
+const COPPER: &str = "'baseColorFactor': [0.9, 0.6, 0.5, 1]";
+const GLASS: &str = "'metallicFactor': 0";
+const TEXTURE: &str = "{'index': 0}";
 
 #[test]
 fn a_metal_has_its_base_colour() {
@@ -33,22 +32,21 @@ fn a_metal_has_its_base_colour() {
     assert_f0("", "", [1.0; 3]);
     assert_f0(COPPER, "", [0.9, 0.6, 0.5]);
     // The index of refraction is the dielectric's.
-    assert_f0(COPPER, "\"KHR_materials_ior\": {\"ior\": 2}", [0.9, 0.6, 0.5]);
-    assert_f0(COPPER, "\"KHR_materials_specular\": {\"specularFactor\": 0}", [0.9, 0.6, 0.5]);
+    assert_f0(COPPER, "'KHR_materials_ior': {'ior': 2}", [0.9, 0.6, 0.5]);
+    assert_f0(COPPER, "'KHR_materials_specular': {'specularFactor': 0}", [0.9, 0.6, 0.5]);
 }
 
 #[test]
 fn a_dielectric_has_that_of_its_index() {
     assert_f0(&format!("{GLASS}, {COPPER}"), "", [0.04; 3]);
-    assert_f0(GLASS, "\"KHR_materials_ior\": {\"ior\": 2}", [1.0 / 9.0; 3]);
-    assert_f0(GLASS, "\"KHR_materials_ior\": {\"ior\": 0}", [1.0; 3]);
+    assert_f0(GLASS, "'KHR_materials_ior': {'ior': 2}", [1.0 / 9.0; 3]);
+    assert_f0(GLASS, "'KHR_materials_ior': {'ior': 0}", [1.0; 3]);
     // Colours and textures of metals have no say.
-    assert_f0(&format!("{GLASS}, \"baseColorFactor\": [1.2, 1, 1, 1]"), "", [0.04; 3]);
-    let textures = format!(
-        "{GLASS}, \"baseColorTexture\": {TEXTURE}, \"metallicRoughnessTexture\": {TEXTURE}"
-    );
+    assert_f0(&format!("{GLASS}, 'baseColorFactor': [1.2, 1, 1, 1]"), "", [0.04; 3]);
+    let textures =
+        format!("{GLASS}, 'baseColorTexture': {TEXTURE}, 'metallicRoughnessTexture': {TEXTURE}");
     let scene =
-        load("a.gltf", &document(&format!("{{\"pbrMetallicRoughness\": {{{textures}}}}}"), ""));
+        load("a.gltf", &document(&format!("{{'pbrMetallicRoughness': {{{textures}}}}}"), ""));
     let Some(Reflectance::Schlick([f0, ..])) = scene.materials[0].fresnel else { unreachable!() };
     assert!((f0 - 0.04).abs() < 1e-15, "{f0}");
 }
@@ -56,15 +54,15 @@ fn a_dielectric_has_that_of_its_index() {
 #[test]
 fn between_both_it_is_mixed_for_each_channel() {
     // 0.04 * 0.75 + [0.9, 0.6, 0.5] * 0.25
-    let half = format!("{COPPER}, \"metallicFactor\": 0.25");
+    let half = format!("{COPPER}, 'metallicFactor': 0.25");
     assert_f0(&half, "", [0.255, 0.18, 0.155]);
 }
 
 #[test]
 fn textures_that_vary_it_leave_it_open() {
-    let with = |texture: &str| format!("{COPPER}, \"{texture}\": {TEXTURE}");
+    let with = |texture: &str| format!("{COPPER}, '{texture}': {TEXTURE}");
     let open = |pbr: &str| {
-        let material = format!("{{\"pbrMetallicRoughness\": {{{pbr}}}}}");
+        let material = format!("{{'pbrMetallicRoughness': {{{pbr}}}}}");
         load("a.gltf", &document(&material, "")).materials[0].fresnel
     };
     assert_eq!(open(&with("baseColorTexture")), None);
@@ -73,23 +71,23 @@ fn textures_that_vary_it_leave_it_open() {
 
 #[test]
 fn the_specular_extension_tints_a_dielectric() {
-    let specular = |value: &str| format!("\"KHR_materials_specular\": {{{value}}}");
-    let colour = "\"specularColorFactor\": [0.5, 1, 100]";
+    let specular = |value: &str| format!("'KHR_materials_specular': {{{value}}}");
+    let colour = "'specularColorFactor': [0.5, 1, 100]";
     assert_f0(GLASS, &specular(""), [0.04; 3]);
     assert_f0(GLASS, &specular(colour), [0.02, 0.04, 1.0]);
     // F90 is the factor, which is not Schlick's 1.
-    assert_eq!(fresnel(GLASS, &specular("\"specularFactor\": 0.5")), None);
+    assert_eq!(fresnel(GLASS, &specular("'specularFactor': 0.5")), None);
     for texture in ["specularTexture", "specularColorTexture"] {
-        assert_eq!(fresnel(GLASS, &specular(&format!("\"{texture}\": {TEXTURE}"))), None);
+        assert_eq!(fresnel(GLASS, &specular(&format!("'{texture}': {TEXTURE}"))), None);
     }
 }
 
 #[test]
 fn a_film_leaves_it_open_where_there_is_one() {
-    let film = |value: &str| format!("\"KHR_materials_iridescence\": {{{value}}}");
-    assert_eq!(fresnel(GLASS, &film("\"iridescenceFactor\": 0.5")), None);
+    let film = |value: &str| format!("'KHR_materials_iridescence': {{{value}}}");
+    assert_eq!(fresnel(GLASS, &film("'iridescenceFactor': 0.5")), None);
     // The texture is multiplied with the factor, which is 0 by default.
-    for none in ["", "\"iridescenceFactor\": 0, \"iridescenceTexture\": {\"index\": 0}"] {
+    for none in ["", "'iridescenceFactor': 0, 'iridescenceTexture': {'index': 0}"] {
         assert_f0(GLASS, &film(none), [0.04; 3]);
     }
 }
@@ -97,9 +95,9 @@ fn a_film_leaves_it_open_where_there_is_one() {
 #[test]
 fn a_dielectric_that_reflects_nothing_has_no_lobe() {
     let scene = |pbr: &str, extensions: &str| {
-        let specular = "\"KHR_materials_specular\": {\"specularFactor\": 0}";
+        let specular = "'KHR_materials_specular': {'specularFactor': 0}";
         let material = format!(
-            "{{\"name\": \"m\", \"pbrMetallicRoughness\": {{{pbr}}}, \"extensions\": {{{specular}{extensions}}}}}"
+            "{{'name': 'm', 'pbrMetallicRoughness': {{{pbr}}}, 'extensions': {{{specular}{extensions}}}}}"
         );
         load("a.gltf", &document(&material, ""))
     };
@@ -108,19 +106,19 @@ fn a_dielectric_that_reflects_nothing_has_no_lobe() {
     let [ignored] = &none.ignored[..] else { panic!("{:?}", none.ignored) };
     assert!(ignored.understood && ignored.reason.contains("specularFactor is 0"), "{ignored}");
     // What it transmits passes through its facets, and metal reflects.
-    let through = scene(GLASS, ", \"KHR_materials_transmission\": {\"transmissionFactor\": 1}");
+    let through = scene(GLASS, ", 'KHR_materials_transmission': {'transmissionFactor': 1}");
     assert_eq!((through.materials.len(), through.materials[0].fresnel), (1, None));
-    assert_eq!(scene("\"metallicFactor\": 0.5", "").materials.len(), 1);
+    assert_eq!(scene("'metallicFactor': 0.5", "").materials.len(), 1);
 }
 
 #[test]
 fn specular_and_glossiness_state_it() {
-    let gloss = |value: &str| format!("\"KHR_materials_pbrSpecularGlossiness\": {{{value}}}");
+    let gloss = |value: &str| format!("'KHR_materials_pbrSpecularGlossiness': {{{value}}}");
     assert_f0("", &gloss(""), [1.0; 3]);
-    assert_f0(COPPER, &gloss("\"specularFactor\": [0.1, 0.2, 0.3]"), [0.1, 0.2, 0.3]);
+    assert_f0(COPPER, &gloss("'specularFactor': [0.1, 0.2, 0.3]"), [0.1, 0.2, 0.3]);
     let material = format!(
-        "{{\"extensions\": {{{}}}}}",
-        gloss(&format!("\"specularGlossinessTexture\": {TEXTURE}"))
+        "{{'extensions': {{{}}}}}",
+        gloss(&format!("'specularGlossinessTexture': {TEXTURE}"))
     );
     assert_eq!(load("a.gltf", &document(&material, "")).materials[0].fresnel, None);
 }

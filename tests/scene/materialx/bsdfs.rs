@@ -3,7 +3,7 @@
 use microfacet_baker::scene::{Reflectance, Scene};
 use microfacet_tables::Interval;
 
-use super::{document, not_understood};
+use super::{document, node, not_understood};
 use crate::{Folder, anisotropic, assert_close, isotropic, load, names, png};
 
 /// A surface whose BSDF is the node "end".
@@ -14,16 +14,14 @@ fn surface(nodes: &str) -> String {
 }
 
 fn bsdf(class: &str, name: &str, inputs: &[(&str, &str)]) -> String {
-    let inputs: String =
-        inputs.iter().map(|(name, value)| format!("<input name=\"{name}\" {value}/>")).collect();
-    format!("<{class} name=\"{name}\" type=\"BSDF\">{inputs}</{class}>")
+    node(class, name, "BSDF", inputs)
 }
 
 fn one(class: &str, inputs: &[(&str, &str)]) -> Scene {
     load("a.mtlx", &surface(&bsdf(class, "end", inputs)))
 }
 
-const ROUGH: (&str, &str) = ("roughness", "value=\"0.2, 0.3\"");
+const ROUGH: (&str, &str) = ("roughness", "0.2, 0.3");
 
 #[test]
 fn roughness_is_alpha_of_each_axis() {
@@ -34,21 +32,21 @@ fn roughness_is_alpha_of_each_axis() {
     assert_eq!(one("dielectric_bsdf", &[]).materials[0].lobe.roughness, isotropic(0.05));
 
     let from = |node: &str| {
-        let inputs = [("roughness", "nodename=\"r\"")];
+        let inputs = [("roughness", "nodename='r'")];
         let text = surface(&(node.to_owned() + &bsdf("dielectric_bsdf", "end", &inputs)));
         load("a.mtlx", &text).materials[0].lobe.roughness
     };
     let stretched = |node: &str, roughness: &str| {
-        from(&bsdf(node, "r", &[(roughness, "value=\"0.6\""), ("anisotropy", "value=\"0.36\"")]))
+        from(&bsdf(node, "r", &[(roughness, "0.6"), ("anisotropy", "0.36")]))
     };
     // The aspect is sqrt(1 - 0.36) = 0.8.
     assert_close(stretched("roughness_anisotropy", "roughness"), [0.45; 2], [0.288; 2]);
     assert_close(stretched("glossiness_anisotropy", "glossiness"), [0.2; 2], [0.128; 2]);
-    let dual = from(&bsdf("roughness_dual", "r", &[("roughness", "value=\"0.5, 0.6\"")]));
+    let dual = from(&bsdf("roughness_dual", "r", &[("roughness", "0.5, 0.6")]));
     assert_close(dual, [0.25; 2], [0.36; 2]);
-    let one = from(&bsdf("roughness_dual", "r", &[("roughness", "value=\"0.5, -1\"")]));
+    let one = from(&bsdf("roughness_dual", "r", &[("roughness", "0.5, -1")]));
     assert_eq!(one, isotropic(0.25));
-    let two = [("in1", "value=\"0.1\""), ("in2", "value=\"0.4\"")];
+    let two = [("in1", "0.1"), ("in2", "0.4")];
     assert_eq!(from(&bsdf("combine2", "r", &two)), anisotropic(0.1, 0.4));
 }
 
@@ -56,11 +54,11 @@ fn roughness_is_alpha_of_each_axis() {
 fn one_texture_for_both_axes_is_isotropic() {
     let image = r#"<image name="i" type="float"><input name="file" value="a.png"/></image>"#;
     let load = |pair: &str| {
-        let inputs = [("roughness", "nodename=\"r\"")];
+        let inputs = [("roughness", "nodename='r'")];
         let text = surface(&(image.to_owned() + pair + &bsdf("conductor_bsdf", "end", &inputs)));
         Folder::new(&[("a.png", png()), ("a.mtlx", text.into_bytes())]).load("a.mtlx").unwrap()
     };
-    let of_image = "nodename=\"i\"";
+    let of_image = "nodename='i'";
     let pairs = [
         bsdf("combine2", "r", &[("in1", of_image), ("in2", of_image)]),
         bsdf("convert", "r", &[("in", of_image)]),
@@ -70,7 +68,7 @@ fn one_texture_for_both_axes_is_isotropic() {
         assert!(roughness.is_isotropic(), "{roughness:?}");
         assert_close(roughness, [0.2, 0.4], [0.2, 0.4]);
     }
-    let half = bsdf("combine2", "r", &[("in1", of_image), ("in2", "value=\"0.2\"")]);
+    let half = bsdf("combine2", "r", &[("in1", of_image), ("in2", "0.2")]);
     let roughness = load(&half).materials[0].lobe.roughness;
     assert!(!roughness.is_isotropic());
     assert_close(roughness, [0.2, 0.4], [0.2; 2]);
@@ -79,32 +77,25 @@ fn one_texture_for_both_axes_is_isotropic() {
 #[test]
 fn fresnel_terms_are_those_of_the_nodes() {
     let fresnel = |class, inputs: &[_]| one(class, inputs).materials[0].fresnel;
-    let (n, k) = (("ior", "value=\"0.2, 0.9, 1.1\""), ("extinction", "value=\"3.9, 2.4, 2.2\""));
+    let (n, k) = (("ior", "0.2, 0.9, 1.1"), ("extinction", "3.9, 2.4, 2.2"));
     let copper = Reflectance::Conductor { eta: [0.2, 0.9, 1.1], k: [3.9, 2.4, 2.2] };
     assert_eq!(fresnel("conductor_bsdf", &[n, k]), Some(copper));
-    assert_eq!(fresnel("conductor_bsdf", &[n, k, ("thinfilm_thickness", "value=\"300\"")]), None);
-    assert_eq!(
-        fresnel("dielectric_bsdf", &[("ior", "value=\"1.7\"")]),
-        Some(Reflectance::dielectric(1.7))
-    );
-    let copper = ("color0", "value=\"0.9, 0.6, 0.5\"");
+    assert_eq!(fresnel("conductor_bsdf", &[n, k, ("thinfilm_thickness", "300")]), None);
+    let glass = Some(Reflectance::dielectric(1.7));
+    assert_eq!(fresnel("dielectric_bsdf", &[("ior", "1.7")]), glass);
+    let copper = ("color0", "0.9, 0.6, 0.5");
     let schlick = |more| fresnel("generalized_schlick_bsdf", &[copper, more]);
-    assert_eq!(schlick(("weight", "value=\"0.5\"")), Some(Reflectance::Schlick([0.9, 0.6, 0.5])));
+    assert_eq!(schlick(("weight", "0.5")), Some(Reflectance::Schlick([0.9, 0.6, 0.5])));
     for other in ["color82", "color90"] {
-        assert_eq!(schlick((other, "value=\"1, 1, 0.9\"")), None, "{other}");
+        assert_eq!(schlick((other, "1, 1, 0.9")), None, "{other}");
     }
-    assert_eq!(schlick(("exponent", "value=\"4\"")), None);
+    assert_eq!(schlick(("exponent", "4")), None);
 
     // From the outputs of one node: r = 0.25 with a black edge is n = 3, k = 0.
-    let artistic = bsdf(
-        "artistic_ior",
-        "m",
-        &[("reflectivity", "value=\"0.25 0.25 0.25\""), ("edge_color", "value=\"0, 0, 0\"")],
-    );
-    let outputs = [
-        ("ior", "nodename=\"m\" output=\"ior\""),
-        ("extinction", "nodename=\"m\" output=\"extinction\""),
-    ];
+    let inputs = [("reflectivity", "0.25 0.25 0.25"), ("edge_color", "0, 0, 0")];
+    let artistic = bsdf("artistic_ior", "m", &inputs);
+    let outputs =
+        [("ior", "nodename='m' output='ior'"), ("extinction", "nodename='m' output='extinction'")];
     let text = surface(&(artistic + &bsdf("conductor_bsdf", "end", &outputs)));
     let Some(Reflectance::Conductor { eta, k }) = load("a.mtlx", &text).materials[0].fresnel else {
         panic!("no conductor")
@@ -115,43 +106,35 @@ fn fresnel_terms_are_those_of_the_nodes() {
 #[test]
 fn lobes_are_found_through_layers_and_mixtures() {
     let parts = bsdf("dielectric_bsdf", "coat", &[ROUGH])
-        + &bsdf("dielectric_bsdf", "pane", &[ROUGH, ("scatter_mode", "value=\"T\"")])
+        + &bsdf("dielectric_bsdf", "pane", &[ROUGH, ("scatter_mode", "T")])
         + &bsdf("conductor_bsdf", "metal", &[ROUGH])
         + &bsdf("generalized_schlick_bsdf", "other", &[ROUGH])
-        + &bsdf("dielectric_bsdf", "none", &[ROUGH, ("weight", "value=\"0\"")])
+        + &bsdf("dielectric_bsdf", "none", &[ROUGH, ("weight", "0")])
         + &bsdf("oren_nayar_diffuse_bsdf", "diffuse", &[])
         + &bsdf("sheen_bsdf", "cloth", &[]);
     let of = |tree: &str| load("a.mtlx", &surface(&(parts.clone() + tree)));
-    let node = |class: &str, name: &str, a: (&str, &str), b: (&str, &str), more: &str| {
-        format!(
-            "<{class} name=\"{name}\" type=\"BSDF\"><input name=\"{}\" nodename=\"{}\"/><input name=\"{}\" {}/>{more}</{class}>",
-            a.0, a.1, b.0, b.1
-        )
-    };
-    let layered = node("layer", "end", ("top", "coat"), ("base", "nodename=\"m\""), "");
-    let mix = |amount: &str| {
-        let amount = format!("<input name=\"mix\" value=\"{amount}\"/>");
-        node("mix", "m", ("fg", "metal"), ("bg", "nodename=\"other\""), &amount) + &layered
-    };
-    assert_eq!(names(&of(&mix("0.5"))), ["a.dielectric", "a.conductor", "a.schlick"]);
-    assert_eq!(names(&of(&mix("0"))), ["a.dielectric", "a.schlick"]);
-    assert_eq!(names(&of(&mix("1"))), ["a.dielectric", "a.conductor"]);
-
-    let add = node("add", "end", ("in1", "none"), ("in2", "nodename=\"metal\""), "");
-    assert_eq!(names(&of(&add)), ["a"]);
-    let times = |factor: &str| node("multiply", "end", ("in1", "metal"), ("in2", factor), "");
-    assert_eq!(names(&of(&times("value=\"0, 0.1, 0\""))), ["a"]);
-    assert_eq!(of(&times("value=\"0\"")).materials, []);
+    let end = |class: &str, inputs: &[(&str, &str)]| of(&bsdf(class, "end", inputs));
+    let (coat, metal) = ("nodename='coat'", "nodename='metal'");
+    let layered = bsdf("layer", "end", &[("top", coat), ("base", "nodename='m'")]);
+    let all = ["a.dielectric", "a.conductor", "a.schlick"];
+    for (amount, lobes) in
+        [("0.5", &all[..]), ("0", &["a.dielectric", "a.schlick"]), ("1", &all[..2])]
+    {
+        let inputs = [("fg", metal), ("bg", "nodename='other'"), ("mix", amount)];
+        assert_eq!(names(&of(&(bsdf("mix", "m", &inputs) + &layered))), lobes);
+    }
+    assert_eq!(names(&end("add", &[("in1", "nodename='none'"), ("in2", metal)])), ["a"]);
+    let times = |factor: &str| end("multiply", &[("in1", metal), ("in2", factor)]);
+    assert_eq!(names(&times("0, 0.1, 0")), ["a"]);
+    assert_eq!(times("0").materials, []);
     // An interface that reflects and transmits.
-    let glass = node("layer", "end", ("top", "coat"), ("base", "nodename=\"pane\""), "");
-    assert_eq!(names(&of(&glass)), ["a"]);
+    assert_eq!(names(&end("layer", &[("top", coat), ("base", "nodename='pane'")])), ["a"]);
 
-    let fabric = node("layer", "end", ("top", "cloth"), ("base", "nodename=\"metal\""), "");
-    let fabric = of(&fabric);
+    let fabric = end("layer", &[("top", "nodename='cloth'"), ("base", metal)]);
     assert_eq!((names(&fabric), &fabric.ignored[0].name[..]), (vec!["a"], "a.sheen"));
     // A film changes what it lies on.
     let film = bsdf("thin_film_bsdf", "film", &[])
-        + &node("layer", "end", ("top", "film"), ("base", "nodename=\"coat\""), "");
+        + &bsdf("layer", "end", &[("top", "nodename='film'"), ("base", coat)]);
     assert_eq!(of(&film).materials[0].fresnel, None);
 }
 
@@ -175,20 +158,20 @@ fn what_has_no_microfacets_is_understood() {
 #[test]
 fn a_bsdf_that_is_not_understood_leaves_the_others() {
     let layered = |base: &str| {
-        let layer = bsdf("layer", "end", &[("top", "nodename=\"t\""), ("base", "nodename=\"b\"")]);
+        let layer = bsdf("layer", "end", &[("top", "nodename='t'"), ("base", "nodename='b'")]);
         load("a.mtlx", &surface(&(bsdf("dielectric_bsdf", "t", &[]) + base + &layer)))
     };
     for base in [
         bsdf("LamaSSS", "b", &[]),
-        bsdf("conductor_bsdf", "b", &[("distribution", "value=\"gtr1\"")]),
-        bsdf("conductor_bsdf", "b", &[("roughness", "value=\"x\"")]),
+        bsdf("conductor_bsdf", "b", &[("distribution", "gtr1")]),
+        bsdf("conductor_bsdf", "b", &[("roughness", "x")]),
     ] {
         let scene = layered(&base);
         assert_eq!(names(&scene), ["a"]);
         let [ignored] = &scene.ignored[..] else { panic!("{:?}", scene.ignored) };
         assert!(ignored.name == "a.b" && !ignored.understood, "{ignored}");
     }
-    not_understood("<LamaX name=\"a\" type=\"surfaceshader\"/>", &["neither a node"]);
+    not_understood("<LamaX name='a' type='surfaceshader'/>", &["neither a node"]);
 }
 
 #[test]
@@ -202,28 +185,28 @@ fn a_broken_branch_leaves_the_others() {
         assert!(ignored.name == name && !ignored.understood, "{ignored}");
         assert!(ignored.reason.contains(why), "{ignored}");
     };
-    let (metal, absent) = ("nodename=\"metal\"", "nodename=\"absent\"");
-    let half = ("mix", "value=\"0.5\"");
+    let (metal, absent) = ("nodename='metal'", "nodename='absent'");
+    let half = ("mix", "0.5");
     broken("mix", &[("fg", metal), ("bg", absent), half], &["a"], "no node \"absent\"");
     broken("mix", &[("fg", absent), ("bg", metal), half], &["a"], "no node \"absent\"");
     broken("add", &[("in1", absent), ("in2", metal)], &["a"], "no node \"absent\"");
     broken("layer", &[("top", absent), ("base", metal)], &["a"], "no node \"absent\"");
-    let itself = "nodename=\"end\"";
+    let itself = "nodename='end'";
     broken("mix", &[("fg", metal), ("bg", itself), half], &[], "connected to itself");
-    broken("mix", &[("fg", metal), ("bg", metal), ("mix", "value=\"x\"")], &[], "number");
-    broken("multiply", &[("in1", metal), ("in2", "value=\"\"")], &[], "number");
+    broken("mix", &[("fg", metal), ("bg", metal), ("mix", "x")], &[], "number");
+    broken("multiply", &[("in1", metal), ("in2", "")], &[], "number");
 }
 
 /// A node that the document defines by a graph, which has an interface.
-const DEFINED: &str = r#"
-    <nodedef name="ND_paint" node="paint">
-      <input name="gloss" type="vector2" value="0.1, 0.1"/><output name="out" type="surfaceshader"/>
+const DEFINED: &str = "
+    <nodedef name='ND_paint' node='paint'>
+      <input name='gloss' type='vector2' value='0.1, 0.1'/><output name='out' type='surfaceshader'/>
     </nodedef>
-    <nodegraph name="NG_paint" nodedef="ND_paint">
-      <dielectric_bsdf name="d" type="BSDF"><input name="roughness" interfacename="gloss"/></dielectric_bsdf>
-      <surface name="s" type="surfaceshader"><input name="bsdf" nodename="d"/></surface>
-      <output name="out" type="surfaceshader" nodename="s"/>
-    </nodegraph>"#;
+    <nodegraph name='NG_paint' nodedef='ND_paint'>
+      <dielectric_bsdf name='d' type='BSDF'><input name='roughness' interfacename='gloss'/></dielectric_bsdf>
+      <surface name='s' type='surfaceshader'><input name='bsdf' nodename='d'/></surface>
+      <output name='out' type='surfaceshader' nodename='s'/>
+    </nodegraph>";
 
 #[test]
 fn nodes_are_followed_into_the_graphs_that_define_them() {
@@ -235,8 +218,8 @@ fn nodes_are_followed_into_the_graphs_that_define_them() {
     assert_eq!(scene.materials[1].lobe.roughness, isotropic(0.3));
     // Also if the graph is named by an implementation.
     let named = DEFINED
-        .replace("nodegraph name=\"NG_paint\" nodedef=\"ND_paint\"", "nodegraph name=\"NG_paint\"")
-        + "<implementation name=\"I\" nodedef=\"ND_paint\" nodegraph=\"NG_paint\"/>";
+        .replace("nodegraph name='NG_paint' nodedef='ND_paint'", "nodegraph name='NG_paint'")
+        + "<implementation name='I' nodedef='ND_paint' nodegraph='NG_paint'/>";
     assert_eq!(names(&load("a.mtlx", &document(&(named + uses)))), ["a", "b"]);
 
     // A value may be defined too.
@@ -252,12 +235,15 @@ fn nodes_are_followed_into_the_graphs_that_define_them() {
 
 #[test]
 fn a_node_that_is_a_part_of_itself_ends() {
-    let itself = DEFINED.replace("<surface name=\"s\" type=\"surfaceshader\"><input name=\"bsdf\" nodename=\"d\"/></surface>", "<paint name=\"s\" type=\"surfaceshader\"/>");
+    let itself = DEFINED.replace(
+        "<surface name='s' type='surfaceshader'><input name='bsdf' nodename='d'/></surface>",
+        "<paint name='s' type='surfaceshader'/>",
+    );
     not_understood(
-        &format!("{itself}<paint name=\"a\" type=\"surfaceshader\"/>"),
+        &format!("{itself}<paint name='a' type='surfaceshader'/>"),
         &["a part of itself"],
     );
-    let layer = bsdf("layer", "end", &[("top", "nodename=\"end\""), ("base", "nodename=\"end\"")]);
+    let layer = bsdf("layer", "end", &[("top", "nodename='end'"), ("base", "nodename='end'")]);
     let scene = load("a.mtlx", &surface(&layer));
     assert!(scene.warnings[0].contains("circle: end -> end"));
     assert!(scene.ignored[0].reason.contains("connected to itself"), "{}", scene.ignored[0]);
@@ -267,11 +253,11 @@ fn a_node_that_is_a_part_of_itself_ends() {
 #[test]
 fn shared_and_deep_graphs_are_followed_once() {
     let layer = |i: usize, next: &str| {
-        let next = format!("nodename=\"{next}\"");
+        let next = format!("nodename='{next}'");
         bsdf("layer", &format!("l{i}"), &[("top", &next), ("base", &next)])
     };
     let deep: String = (1..20_000).map(|i| layer(i, &format!("l{}", i + 1))).collect();
-    let text = bsdf("dot", "end", &[("in", "nodename=\"l1\"")])
+    let text = bsdf("dot", "end", &[("in", "nodename='l1'")])
         + &deep
         + &layer(20_000, "metal")
         + &bsdf("conductor_bsdf", "metal", &[]);

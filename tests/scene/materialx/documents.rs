@@ -10,13 +10,13 @@ const TEXTURED: &str = r#"<image name="i" type="float"><input name="file" value=
 fn an_included_document_keeps_its_folder_and_its_prefix() {
     let roots = [
         // The prefix of one document, in the folder of the other, and both.
-        ("fileprefix=\"maps/\"", "", "sub/a.png"),
-        ("", "fileprefix=\"maps/\"", "sub/maps/a.png"),
-        ("fileprefix=\"other/\"", "fileprefix=\"maps/\"", "sub/maps/a.png"),
+        ("fileprefix='maps/'", "", "sub/a.png"),
+        ("", "fileprefix='maps/'", "sub/maps/a.png"),
+        ("fileprefix='other/'", "fileprefix='maps/'", "sub/maps/a.png"),
     ];
     for (outer, inner, image) in roots {
         let include = format!(
-            "<materialx {outer} xmlns:xi=\"http://www.w3.org/2001/XInclude\"><xi:include href=\"sub/b.mtlx\"/></materialx>"
+            "<materialx {outer} xmlns:xi='http://www.w3.org/2001/XInclude'><xi:include href='sub/b.mtlx'/></materialx>"
         );
         let folder = Folder::new(&[("a.mtlx", include)]);
         std::fs::create_dir_all(folder.path("sub/maps")).unwrap();
@@ -35,13 +35,13 @@ fn an_included_document_keeps_its_folder_and_its_prefix() {
 #[test]
 fn an_included_document_that_cannot_be_used_costs_itself_alone() {
     let load = |href: &str| {
-        let include = |href: &str| format!("\n<xi:include href=\"{href}\"/>");
-        let sound = "<gltf_pbr name=\"a\" type=\"surfaceshader\"/>";
+        let include = |href: &str| format!("\n<xi:include href='{href}'/>");
+        let sound = "<gltf_pbr name='a' type='surfaceshader'/>";
         let broken = "<materialx>\n<gltf_pbr></materialx>";
         let folder = Folder::new(&[
             ("a.mtlx", document(&(include(href) + sound + &include("c.mtlx")))),
             ("b.mtlx", broken.to_owned()),
-            ("c.mtlx", document("<gltf_pbr name=\"c\" type=\"surfaceshader\"/>")),
+            ("c.mtlx", document("<gltf_pbr name='c' type='surfaceshader'/>")),
         ]);
         let scene = folder.load("a.mtlx").unwrap();
         assert_eq!(names(&scene), ["a", "c"]);
@@ -51,7 +51,7 @@ fn an_included_document_that_cannot_be_used_costs_itself_alone() {
         let named = format!("\"{folder}\" is a folder");
         assert_warned(&load(folder), "a.mtlx:2:1", &[&named, "are not seen"]);
     }
-    let parts = ["b.mtlx is not well formed", "b.mtlx:2:11: expected 'gltf_pbr' tag"];
+    let parts = ["b.mtlx is not well formed", "b.mtlx:2:11: expected `</gltf_pbr>`"];
     assert_warned(&load("b.mtlx"), "a.mtlx:2:1", &parts);
 }
 
@@ -90,45 +90,40 @@ fn tiles_count_together() {
 
 #[test]
 fn what_is_mended_moves_no_place() {
-    let odd = "<materialx version=\"1.39\" ns:a=\"1\" ms:a=\"<UDIM>\">\n<q:x r:y=\"<UDIM>\"/>\n";
+    let odd = "<materialx version='1.39' ns:a='1' ms:a='<UDIM>'>\n<q:x r:y='<UDIM>'/>\n";
     let scene =
-        load("a.mtlx", &format!("{odd}<gltf_pbr name=\"a\" type=\"surfaceshader\"/></materialx>"));
+        load("a.mtlx", &format!("{odd}<gltf_pbr name='a' type='surfaceshader'/></materialx>"));
     assert_eq!(names(&scene), ["a"]);
     assert_eq!(scene.materials[0].origin.place.line, Some(3));
     assert_eq!(scene.materials[0].origin.place.column, Some(1));
     // Also behind it on one line, and for what the parser refuses.
     let one = odd.replace('\n', "");
     let scene =
-        load("a.mtlx", &format!("{one}<gltf_pbr name=\"a\" type=\"surfaceshader\"/></materialx>"));
+        load("a.mtlx", &format!("{one}<gltf_pbr name='a' type='surfaceshader'/></materialx>"));
     assert_eq!(scene.materials[0].origin.place.column, Some(1 + one.len() as u32));
-    assert_refused("a.mtlx", &format!("{odd}<a></b>"), ":3:4", &["expected 'a' tag"]);
-    let raw = "<materialx>\n<a b=\"1 < 2\"/></materialx>";
-    assert_refused("a.mtlx", raw, ":2:9", &["'<'"]);
-    let many: String = (0..300).map(|i| format!(" x{i}=\"<UDIM>\"")).collect();
-    let many = format!("<materialx>\n<a{many}/></materialx>");
-    assert_refused("a.mtlx", &many, ":2:2", &["256 attributes"]);
+    assert_refused("a.mtlx", &format!("{odd}<a></b>"), ":3:4", &["expected `</a>`"]);
     // An include whose prefix is not declared is one.
-    let include = "<materialx><xi:include href=\"b.mtlx\"/></materialx>";
+    let include = "<materialx><xi:include href='b.mtlx'/></materialx>";
     assert!(load("a.mtlx", include).warnings[0].contains("b.mtlx is missing"));
 }
 
 #[test]
 fn an_ampersand_may_be_a_character() {
-    let text = "<materialx doc=\"this & that, &nbsp; & <UDIM>&\">\n<a b=\"R&amp;D &#38; &\"/>\
-        <gltf_pbr name=\"x&y&amp;&#x7a;\" type=\"surfaceshader\"/></materialx>";
+    let text = "<materialx doc='this & that, &nbsp; & <UDIM>&'>\n<a b='R&amp;D &#38; &'/>\
+        <gltf_pbr name='x&y&amp;&#x7a;' type='surfaceshader'/></materialx>";
     let scene = load("a.mtlx", text);
     assert_eq!(names(&scene), ["x&y&z"]);
     assert_eq!(scene.materials[0].origin.place.column, Some(25));
     // Numbers of what is no character of XML.
     for number in ["0", "xFFFF", "xD800", "99999999999999"] {
         let text = format!(
-            "<materialx doc=\"&#{number};\"><gltf_pbr name=\"a\" type=\"surfaceshader\"/></materialx>"
+            "<materialx doc='&#{number};'><gltf_pbr name='a' type='surfaceshader'/></materialx>"
         );
         assert_eq!(names(&load("a.mtlx", &text)), ["a"], "{number}");
     }
     // What else is wrong has its own place.
-    let text = "<materialx doc=\"this & that\">\n<a b=\"&\"></c></materialx>";
-    assert_refused("a.mtlx", text, ":2:10", &["expected 'a' tag"]);
+    let text = "<materialx doc='this & that'>\n<a b='&'></c></materialx>";
+    assert_refused("a.mtlx", text, ":2:10", &["expected `</a>`"]);
 }
 
 #[test]
@@ -170,9 +165,7 @@ fn an_input_that_a_node_has_not_is_warned_of() {
         assert_eq!(scene.doubts().count(), 1);
     };
     let node = |class: &str, of_type: &str, input: &str| {
-        format!(
-            "<{class} name=\"a\" type=\"{of_type}\"><input name=\"{input}\" value=\"0.5\"/></{class}>"
-        )
+        format!("<{class} name='a' type='{of_type}'><input name='{input}' value='0.5'/></{class}>")
     };
     for (class, input, near) in [
         ("standard_surface", "specular_roughnes", "specular_roughness"),
@@ -197,14 +190,14 @@ fn an_input_that_a_node_has_not_is_warned_of() {
         case(&node(class, of_type, input), &[&part]);
     }
     // A node that the document defines has the inputs of its definition, also inherited ones.
-    let own = "<nodedef name=\"d\" node=\"mine\" inherit=\"e\"/><nodedef name=\"e\" node=\"other\">\
-               <input name=\"rough\"/><output name=\"o\" type=\"float\"/></nodedef>";
+    let own = "<nodedef name='d' node='mine' inherit='e'/><nodedef name='e' node='other'>\
+               <input name='rough'/><output name='o' type='float'/></nodedef>";
     let mine = node("mine", "float", "ruogh");
     let scene = load("a.mtlx", &document(&format!("{own}\n{mine}")));
     assert_warned(&scene, ":2:29", &["mine has no parameter `ruogh`", "`rough`?"]);
     for sound in [
         format!("{own}{}", node("mine", "float", "rough")),
-        format!("{own}{}", node("mine", "float", "ruogh")).replace("name=\"e\"", "name=\"f\""),
+        format!("{own}{}", node("mine", "float", "ruogh")).replace("name='e'", "name='f'"),
         node("noise2d", "float", "anything"),
         node("standard_surface", "surfaceshader", "coat_normal"),
         node("open_pbr_surface", "surfaceshader", "specular_haze_spread"),
@@ -216,8 +209,8 @@ fn an_input_that_a_node_has_not_is_warned_of() {
 #[test]
 fn known_inputs_that_are_not_read_are_said_unless_they_are_zero() {
     let input = |name: &str, value: &str| {
-        let text = format!("\n<input name=\"{name}\" value=\"{value}\"/>");
-        let shader = "open_pbr_surface name=\"a\" type=\"surfaceshader\"";
+        let text = format!("\n<input name='{name}' value='{value}'/>");
+        let shader = "open_pbr_surface name='a' type='surfaceshader'";
         load("a.mtlx", &document(&format!("<{shader}>{text}</open_pbr_surface>")))
     };
     for name in ["specular_haze", "specular_retroreflectivity"] {
@@ -228,10 +221,11 @@ fn known_inputs_that_are_not_read_are_said_unless_they_are_zero() {
     }
     let retro = |value: &str| {
         let node = format!(
-            "<conductor_bsdf name=\"c\" type=\"BSDF\">\n\
-            <input name=\"retroreflective\" type=\"boolean\" value=\"{value}\"/></conductor_bsdf>"
+            "<conductor_bsdf name='c' type='BSDF'>\n\
+            <input name='retroreflective' type='boolean' value='{value}'/></conductor_bsdf>"
         );
-        let surface = "<surface name=\"a\" type=\"surfaceshader\"><input name=\"bsdf\" nodename=\"c\"/></surface>";
+        let surface =
+            "<surface name='a' type='surfaceshader'><input name='bsdf' nodename='c'/></surface>";
         load("a.mtlx", &document(&(node + surface)))
     };
     assert_warned(&retro("true"), ":2:1", &["retroreflective is not read"]);
@@ -245,13 +239,13 @@ fn an_output_alone_is_one_of_the_document() {
         load(
             "a.mtlx",
             &document(&format!(
-                "<constant name=\"c\" type=\"color4\"><input name=\"value\" value=\"1, 0.25, 0.25, 0.42\"/></constant>
-                 <extract name=\"e\" type=\"float\"><input name=\"in\" nodename=\"c\"/><input name=\"index\" value=\"3\"/></extract>
-                 <output name=\"alpha\" type=\"float\" nodename=\"e\"/>
-                 <standard_surface name=\"s\" type=\"surfaceshader\">
-                 <input name=\"specular_roughness\" type=\"float\" output=\"{output}\"/></standard_surface>
-                 <output name=\"shader\" type=\"surfaceshader\" nodename=\"s\"/>
-                 <surfacematerial name=\"m\" type=\"material\"><input name=\"surfaceshader\" output=\"shader\"/></surfacematerial>"
+                "<constant name='c' type='color4'><input name='value' value='1, 0.25, 0.25, 0.42'/></constant>
+                 <extract name='e' type='float'><input name='in' nodename='c'/><input name='index' value='3'/></extract>
+                 <output name='alpha' type='float' nodename='e'/>
+                 <standard_surface name='s' type='surfaceshader'>
+                 <input name='specular_roughness' type='float' output='{output}'/></standard_surface>
+                 <output name='shader' type='surfaceshader' nodename='s'/>
+                 <surfacematerial name='m' type='material'><input name='surfaceshader' output='shader'/></surfacematerial>"
             )),
         )
     };

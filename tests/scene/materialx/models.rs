@@ -1,20 +1,10 @@
 //! Shading models, against the graphs that define them.
 
-use microfacet_baker::scene::{Material, Reflectance, Roughness, Scene};
+use microfacet_baker::scene::{Material, Reflectance, Roughness};
 use microfacet_tables::Interval;
 
-use super::{document, shader};
+use super::{coloured, document, shader};
 use crate::{anisotropic, assert_close, isotropic, load, names};
-
-/// A shader whose inputs may be colours.
-fn coloured(class: &str, inputs: &[(&str, &str)]) -> Scene {
-    let inputs: String = inputs
-        .iter()
-        .map(|(name, value)| format!("<input name=\"{name}\" type=\"color3\" value=\"{value}\"/>"))
-        .collect();
-    let text = format!("<{class} name=\"a\" type=\"surfaceshader\">{inputs}</{class}>");
-    load("a.mtlx", &document(&text))
-}
 
 #[track_caller]
 fn assert_schlick(material: &Material, f0: f64) {
@@ -186,6 +176,9 @@ fn a_film_that_cannot_be_known_costs_the_fresnel_term_alone() {
         let scene = shader(class, &[(film, f64::NAN)]);
         assert_eq!((names(&scene), scene.ignored.len()), (vec!["a"], 0), "{class}");
         assert_eq!(scene.materials[0].fresnel, None);
-        assert!(scene.warnings[0].contains("the lobe has no Fresnel term"), "{scene:?}");
+        assert!(
+            scene.warnings[0].contains("the lobe is read without its Fresnel term"),
+            "{scene:?}"
+        );
     }
 }

@@ -12,11 +12,11 @@ use crate::{
 };
 
 fn scene(content: &str) -> String {
-    format!("<scene version=\"3.0.0\">{content}</scene>")
+    format!("<scene version='3.0.0'>{content}</scene>")
 }
 
 fn bsdf(class: &str, properties: &str) -> String {
-    scene(&format!("<bsdf type=\"{class}\" id=\"a\">{properties}</bsdf>"))
+    scene(&format!("<bsdf type='{class}' id='a'>{properties}</bsdf>"))
 }
 
 #[test]
@@ -94,13 +94,13 @@ fn principled_squares_the_roughness() {
     };
     assert!((eta - 1.5).abs() < 1e-15, "{eta}");
 
-    let smooth = first("principled", "<float name=\"roughness\" value=\"0\"/>");
+    let smooth = first("principled", "<float name='roughness' value='0'/>");
     assert_eq!(smooth.materials[0].lobe.roughness, isotropic(1e-3), "raised, as Mitsuba does");
 
     let stretched = first(
         "principled",
-        "<float name=\"roughness\" value=\"0.6\"/><float name=\"anisotropic\" value=\"0.4\"/>
-         <float name=\"metallic\" value=\"1\"/><float name=\"clearcoat\" value=\"0.5\"/>",
+        "<float name='roughness' value='0.6'/><float name='anisotropic' value='0.4'/>
+         <float name='metallic' value='1'/><float name='clearcoat' value='0.5'/>",
     );
     // aspect = sqrt(1 - 0.9 * 0.4) = 0.8
     assert_close(stretched.materials[0].lobe.roughness, [0.45; 2], [0.288; 2]);
@@ -110,8 +110,8 @@ fn principled_squares_the_roughness() {
 
     let thin = first(
         "principledthin",
-        "<float name=\"roughness\" value=\"0.6\"/><float name=\"spec_trans\" value=\"1\"/>
-         <float name=\"eta\" value=\"2\"/>",
+        "<float name='roughness' value='0.6'/><float name='spec_trans' value='1'/>
+         <float name='eta' value='2'/>",
     );
     assert_eq!(names(&thin), ["a", "a.transmission"]);
     assert_close(thin.materials[0].lobe.roughness, [0.36; 2], [0.36; 2]);
@@ -187,8 +187,8 @@ fn parameters_and_includes_are_followed() {
 #[test]
 fn includes_in_a_circle_are_refused() {
     let folder = Folder::new(&[
-        ("a.xml", scene("<include filename=\"b.xml\"/>")),
-        ("b.xml", scene("\n<include filename=\"a.xml\"/>")),
+        ("a.xml", scene("<include filename='b.xml'/>")),
+        ("b.xml", scene("\n<include filename='a.xml'/>")),
     ]);
     let message = folder.load("a.xml").unwrap_err().to_string();
     assert!(message.contains("b.xml:2:1: "), "{message}");
@@ -237,7 +237,7 @@ fn textured_alpha_is_a_range() {
 
 #[test]
 fn zero_alpha_is_raised_and_warned_of() {
-    let scene = load("a.xml", &bsdf("roughconductor", "<float name=\"alpha\" value=\"0\"/>"));
+    let scene = load("a.xml", &bsdf("roughconductor", "<float name='alpha' value='0'/>"));
     assert_eq!(scene.materials[0].lobe.roughness, isotropic(1e-4));
     assert!(scene.warnings[0].contains("a.xml:1:24: alpha is 0"), "{:?}", scene.warnings);
 }
@@ -246,6 +246,6 @@ fn zero_alpha_is_raised_and_warned_of() {
 fn what_is_no_scene_is_refused() {
     let case =
         |text: &str, place: &str, parts: &[&str]| assert_refused("a.xml", text, place, parts);
-    case("<scene version=\"3.0.0\">\n<bsdf id=\"a\"></scene>", ":2:14", &["bsdf"]);
+    case("<scene version='3.0.0'>\n<bsdf id='a'></scene>", ":2:14", &["bsdf"]);
     case("<mesh/>", ":1:1", &["<mesh>", "<scene>"]);
 }

@@ -18,8 +18,8 @@ fn over(coat: f64, eta: [f64; 3], k: [f64; 3]) -> Reflectance {
     Reflectance::Conductor { eta: eta.map(|x| x / coat), k: k.map(|x| x / coat) }
 }
 
-const SILVER: &str = "\"spectrum conductor.eta\" \"metal-Ag-eta\"
-    \"spectrum conductor.k\" \"metal-Ag-k\"";
+const SILVER: &str = "'spectrum conductor.eta' 'metal-Ag-eta'
+    'spectrum conductor.k' 'metal-Ag-k'";
 
 #[test]
 fn layered_materials_have_two_interfaces() {
@@ -45,21 +45,21 @@ fn layered_materials_have_two_interfaces() {
 
 #[test]
 fn a_coat_divides_the_index_of_its_conductor() {
-    let coated = |parameters: &str| fresnel(&format!("\"coatedconductor\" {parameters}"));
+    let coated = |parameters: &str| fresnel(&format!("'coatedconductor' {parameters}"));
     let silver = |coat| over(coat, Metal::Silver.eta(), Metal::Silver.k());
     assert_eq!(coated(SILVER), Some(silver(1.5)));
-    assert_eq!(coated(&format!("{SILVER} \"float interface.eta\" 1")), Some(Metal::Silver.into()));
-    assert_eq!(coated(&format!("{SILVER} \"float interface.eta\" 2")), Some(silver(2.0)));
+    assert_eq!(coated(&format!("{SILVER} 'float interface.eta' 1")), Some(Metal::Silver.into()));
+    assert_eq!(coated(&format!("{SILVER} 'float interface.eta' 2")), Some(silver(2.0)));
     // A coat whose index is not one number leaves both open.
-    assert_eq!(coated(&format!("{SILVER} \"spectrum interface.eta\" [ 400 1.5 700 1.4 ]")), None);
+    assert_eq!(coated(&format!("{SILVER} 'spectrum interface.eta' [ 400 1.5 700 1.4 ]")), None);
     assert_eq!(coated(""), Some(over(1.5, Metal::Copper.eta(), Metal::Copper.k())));
-    let grey = "\"rgb reflectance\" [ 0.5 0.5 0.5 ]";
+    let grey = "'rgb reflectance' [ 0.5 0.5 0.5 ]";
     assert_eq!(coated(grey), Some(over(1.5, [1.0; 3], [2.0; 3])));
 }
 
 #[test]
 fn an_impossible_coat_is_warned_of_once() {
-    let text = format!("Material \"coatedconductor\" {SILVER}\n\"float interface.eta\" -1");
+    let text = format!("Material 'coatedconductor' {SILVER}\n'float interface.eta' -1");
     let scene = load("a.pbrt", &text);
     assert_warned(&scene, ":3:1", &["-1", "more than 0", "without its Fresnel term"]);
     assert!(scene.materials.iter().all(|lobe| lobe.fresnel.is_none()), "{:?}", scene.materials);
@@ -67,20 +67,20 @@ fn an_impossible_coat_is_warned_of_once() {
 
 #[test]
 fn eta_and_k_are_colours_or_names_and_copper_by_default() {
-    let index = |parameters: &str| fresnel(&format!("\"conductor\" {parameters}"));
-    let pair = |eta: &str, k: &str| index(&format!("\"spectrum eta\" {eta} \"spectrum k\" {k}"));
+    let index = |parameters: &str| fresnel(&format!("'conductor' {parameters}"));
+    let pair = |eta: &str, k: &str| index(&format!("'spectrum eta' {eta} 'spectrum k' {k}"));
     let (gold, silver, copper) = (Metal::Gold, Metal::Silver, Metal::Copper);
-    assert_eq!(pair("\"metal-CuZn-eta\"", "[ \"metal-CuZn-k\" ]"), Some(Metal::Brass.into()));
-    assert_eq!(pair("\"metal-Au-eta\"", "\"metal-Ag-k\""), Some(over(1.0, gold.eta(), silver.k())));
+    assert_eq!(pair("'metal-CuZn-eta'", "[ 'metal-CuZn-k' ]"), Some(Metal::Brass.into()));
+    assert_eq!(pair("'metal-Au-eta'", "'metal-Ag-k'"), Some(over(1.0, gold.eta(), silver.k())));
     assert_eq!(index(""), Some(copper.into()));
-    assert_eq!(index("\"spectrum eta\" \"metal-Au-eta\""), Some(over(1.0, gold.eta(), copper.k())));
+    assert_eq!(index("'spectrum eta' 'metal-Au-eta'"), Some(over(1.0, gold.eta(), copper.k())));
     let colour = [3.5, 2.5, 1.5];
-    assert_eq!(index("\"rgb k\" [ 3.5 2.5 1.5 ]"), Some(over(1.0, copper.eta(), colour)));
+    assert_eq!(index("'rgb k' [ 3.5 2.5 1.5 ]"), Some(over(1.0, copper.eta(), colour)));
     // Spectra of the scene's own, and textures.
     assert_eq!(pair("[ 400 1.2 700 1.1 ]", "[ 400 3 700 4 ]"), None);
-    assert_eq!(index("\"spectrum eta\" [ 400 1.2 700 1.1 ]"), None);
-    assert_eq!(index("\"texture k\" \"map\""), None);
-    let text = "Material \"conductor\" \"string eta\" \"metal-Au-eta\"";
+    assert_eq!(index("'spectrum eta' [ 400 1.2 700 1.1 ]"), None);
+    assert_eq!(index("'texture k' 'map'"), None);
+    let text = "Material 'conductor' 'string eta' 'metal-Au-eta'";
     let other = load("a.pbrt", text);
     assert_eq!(other.materials[0].fresnel, None);
     assert_warned(&other, ":1:22", &["eta of conductor has the type string", "rgb, spectrum"]);
@@ -88,8 +88,8 @@ fn eta_and_k_are_colours_or_names_and_copper_by_default() {
 
 #[test]
 fn a_reflectance_is_that_at_normal_incidence() {
-    let index = |parameters: &str| fresnel(&format!("\"conductor\" {parameters}"));
-    let Some(Reflectance::Conductor { eta, k }) = index("\"rgb reflectance\" [ 0.2 0 1 ]") else {
+    let index = |parameters: &str| fresnel(&format!("'conductor' {parameters}"));
+    let Some(Reflectance::Conductor { eta, k }) = index("'rgb reflectance' [ 0.2 0 1 ]") else {
         panic!("no conductor")
     };
     assert_eq!(eta, [1.0; 3]);
@@ -98,7 +98,7 @@ fn a_reflectance_is_that_at_normal_incidence() {
     for (reflected, wanted) in reflected.into_iter().zip([0.2, 0.0, 0.9999]) {
         assert!((reflected - wanted).abs() < 1e-12, "{reflected} is not {wanted}");
     }
-    assert_eq!(index("\"texture reflectance\" \"map\""), None);
+    assert_eq!(index("'texture reflectance' 'map'"), None);
 }
 
 #[test]
@@ -113,15 +113,15 @@ fn glasses_have_their_index_at_the_d_line() {
         ("F10", [570.0, 1.730_532_456_282_9], [592.0, 1.727_715_181_802_6]),
         ("F11", [583.0, 1.785_426_602_677_4], [604.0, 1.782_278_668_315_6]),
     ] {
-        let parameter = format!("eta\" \"glass-{name}\"");
+        let parameter = format!("eta' 'glass-{name}'");
         let Some(Reflectance::Dielectric(Interval { min: eta, .. })) =
-            fresnel(&format!("\"dielectric\" \"spectrum {parameter}"))
+            fresnel(&format!("'dielectric' 'spectrum {parameter}"))
         else {
             panic!("{name}")
         };
         let read = below + (587.56 - from) / (to - from) * (above - below);
         assert!((eta - read).abs() < 6e-6, "{name}: {eta} is not {read}");
-        let under = fresnel(&format!("\"coatedconductor\" \"spectrum interface.{parameter}"));
+        let under = fresnel(&format!("'coatedconductor' 'spectrum interface.{parameter}"));
         assert_eq!(under, Some(over(eta, Metal::Copper.eta(), Metal::Copper.k())));
     }
 }
@@ -129,25 +129,25 @@ fn glasses_have_their_index_at_the_d_line() {
 #[test]
 fn other_names_of_spectra_are_warned_of() {
     let case = |class: &str, parameters: &str, line: u32, parts: &[&str]| {
-        let scene = load("a.pbrt", &format!("Material \"{class}\"\n{parameters}"));
+        let scene = load("a.pbrt", &format!("Material '{class}'\n{parameters}"));
         assert!(scene.materials.iter().all(|lobe| lobe.fresnel.is_none()), "{:?}", scene.materials);
         let parts = [parts, &["without its Fresnel term"]].concat();
         assert_warned(&scene, &format!(":{line}:1"), &parts);
     };
     let pair = |eta: &str, k: &str, line: u32, parts: &[&str]| {
-        let parameters = format!("\"spectrum eta\" \"{eta}\"\n\"spectrum k\" \"{k}\"");
+        let parameters = format!("'spectrum eta' '{eta}'\n'spectrum k' '{k}'");
         case("conductor", &parameters, line, parts);
     };
     let unknown = "is not a spectrum that is known here";
-    pair("metal-MgO-eta", "metal-MgO-k", 2, &["eta \"metal-MgO-eta\"", unknown, "\"rgb eta\""]);
-    pair("metal-TiO2-eta", "metal-TiO2-k", 2, &["eta \"metal-TiO2-eta\"", unknown]);
-    pair("metal-Au-k", "metal-Au-eta", 2, &["eta \"metal-Au-k\"", unknown]);
-    pair("metal-Au-eta", "spd/Au.k.spd", 3, &["k \"spd/Au.k.spd\"", "in a file", "\"rgb k\""]);
-    let reflectance = "\"spectrum reflectance\" \"paint.spd\"";
-    case("conductor", reflectance, 2, &["reflectance \"paint.spd\"", "in a file"]);
-    let glass = "\"spectrum eta\" \"glass-SF5\"";
-    case("dielectric", glass, 2, &["eta \"glass-SF5\"", unknown, "\"float eta\""]);
+    pair("metal-MgO-eta", "metal-MgO-k", 2, &["eta 'metal-MgO-eta'", unknown, "'rgb eta'"]);
+    pair("metal-TiO2-eta", "metal-TiO2-k", 2, &["eta 'metal-TiO2-eta'", unknown]);
+    pair("metal-Au-k", "metal-Au-eta", 2, &["eta 'metal-Au-k'", unknown]);
+    pair("metal-Au-eta", "spd/Au.k.spd", 3, &["k 'spd/Au.k.spd'", "in a file", "'rgb k'"]);
+    let reflectance = "'spectrum reflectance' 'paint.spd'";
+    case("conductor", reflectance, 2, &["reflectance 'paint.spd'", "in a file"]);
+    let glass = "'spectrum eta' 'glass-SF5'";
+    case("dielectric", glass, 2, &["eta 'glass-SF5'", unknown, "'float eta'"]);
     // Once for both of its interfaces.
-    let coat = "\"spectrum interface.eta\" \"glass-BK8\"";
-    case("coatedconductor", coat, 2, &["interface.eta \"glass-BK8\"", unknown]);
+    let coat = "'spectrum interface.eta' 'glass-BK8'";
+    case("coatedconductor", coat, 2, &["interface.eta 'glass-BK8'", unknown]);
 }

@@ -74,21 +74,15 @@ fn roughness_is_remapped_and_the_rest_is_ggx() {
 #[test]
 fn below_a_thousandth_alpha_is_smooth() {
     let material = |parameters: &str| {
-        let text = format!("Material \"conductor\" \"bool remaproughness\" false {parameters}");
+        let text = format!("Material 'conductor' 'bool remaproughness' false {parameters}");
         load("a.pbrt", &text).materials[0].lobe.roughness
     };
-    assert_eq!(material("\"float roughness\" 0.0009"), Roughness::Smooth);
-    assert_eq!(material("\"float roughness\" 0.001"), isotropic(0.001));
+    assert_eq!(material("'float roughness' 0.0009"), Roughness::Smooth);
+    assert_eq!(material("'float roughness' 0.001"), isotropic(0.001));
     // One rough axis makes the other rough, too.
-    assert_eq!(material("\"float uroughness\" 0.5"), anisotropic(0.5, 1e-4));
-    assert_eq!(
-        material("\"float uroughness\" 0.0005 \"float vroughness\" 0.0009"),
-        Roughness::Smooth
-    );
-    assert_eq!(
-        material("\"float uroughness\" 0.5 \"float roughness\" 0.25"),
-        anisotropic(0.5, 0.25)
-    );
+    assert_eq!(material("'float uroughness' 0.5"), anisotropic(0.5, 1e-4));
+    assert_eq!(material("'float uroughness' 0.0005 'float vroughness' 0.0009"), Roughness::Smooth);
+    assert_eq!(material("'float uroughness' 0.5 'float roughness' 0.25"), anisotropic(0.5, 0.25));
 }
 
 #[test]
@@ -145,7 +139,7 @@ fn attributes_are_defaults_in_their_block() {
 #[test]
 fn included_files_belong_to_the_scene() {
     let mut packed = GzEncoder::new(Vec::new(), Compression::fast());
-    packed.write_all(b"NamedMaterial \"b\" Shape \"sphere\"").unwrap();
+    packed.write_all(br#"NamedMaterial "b" Shape "sphere""#).unwrap();
     let folder = Folder::new(&[
         (
             "a.pbrt",
@@ -164,7 +158,7 @@ fn included_files_belong_to_the_scene() {
     let used: Vec<_> = scene.materials.iter().map(|m| m.used).collect();
     assert_eq!(used, [true, true, false], "an import leaves the current material as it was");
     assert!(scene.materials[0].origin.place.file.ends_with("materials.pbrt"));
-    assert_warned(&folder.load("shapes.pbrt.gz").unwrap(), ":1:1", &["\"b\" is not defined"]);
+    assert_warned(&folder.load("shapes.pbrt.gz").unwrap(), ":1:1", &["'b' is not defined"]);
 }
 
 #[test]
@@ -185,8 +179,7 @@ fn a_missing_include_leaves_everything_in_use() {
 
 #[test]
 fn files_that_include_each_other_are_refused() {
-    let folder =
-        Folder::new(&[("a.pbrt", "Include \"b.pbrt\""), ("b.pbrt", "\n  Import \"a.pbrt\"")]);
+    let folder = Folder::new(&[("a.pbrt", "Include 'b.pbrt'"), ("b.pbrt", "\n  Import 'a.pbrt'")]);
     let message = folder.load("a.pbrt").unwrap_err().to_string();
     assert!(message.contains("b.pbrt:2:3: "), "{message}");
     assert!(message.contains("a.pbrt -> b.pbrt -> a.pbrt"), "{message}");
@@ -196,21 +189,17 @@ fn files_that_include_each_other_are_refused() {
 fn bad_syntax_is_refused_at_its_place() {
     let case =
         |text: &str, place: &str, parts: &[&str]| assert_refused("a.pbrt", text, place, parts);
-    case("WorldBegin\n Shpe \"sphere\"", ":2:2", &["Shpe", "did you mean `Shape`?"]);
-    case("Film \"rgb\n\"", ":1:6", &["closing quote"]);
-    case("Film \"r\\gb\"", ":1:6", &["escape"]);
-    case("Shape \"a\" \"point3 P\" [ 1 2\n 3", ":1:22", &["closing bracket"]);
-    case(
-        "Shape \"a\" \"point3 P\" [ 1 2\nShape \"b\" \"point3 P\" [ 1 ]",
-        ":1:22",
-        &["closing bracket"],
-    );
-    case("Material \"conductor\" \"float roughness\" [ 1 \"b", ":1:44", &["closing quote"]);
-    case("Material \"conductor\" \"float roughness\" [ 1", ":1:40", &["closing bracket"]);
-    case("Material \"conductor\" \"float roughness\"", ":1:22", &["no value"]);
-    case("Material \"conductor\" \"roughness\" 1", ":1:22", &["declares no parameter"]);
+    case("WorldBegin\n Shpe 'sphere'", ":2:2", &["Shpe", "did you mean `Shape`?"]);
+    case("Film 'rgb\n'", ":1:6", &["closing quote"]);
+    case("Film 'r\\gb'", ":1:6", &["escape"]);
+    case("Shape 'a' 'point3 P' [ 1 2\n 3", ":1:22", &["closing bracket"]);
+    case("Shape 'a' 'point3 P' [ 1 2\nShape 'b' 'point3 P' [ 1 ]", ":1:22", &["closing bracket"]);
+    case("Material 'conductor' 'float roughness' [ 1 'b", ":1:44", &["closing quote"]);
+    case("Material 'conductor' 'float roughness' [ 1", ":1:40", &["closing bracket"]);
+    case("Material 'conductor' 'float roughness'", ":1:22", &["no value"]);
+    case("Material 'conductor' 'roughness' 1", ":1:22", &["declares no parameter"]);
     case("Material conductor", ":1:10", &["in quotes", "conductor"]);
-    case("Shape \"a\" ]", ":1:11", &["closes no list"]);
+    case("Shape 'a' ]", ":1:11", &["closes no list"]);
     case("AttributeEnd", ":1:1", &["without its beginning"]);
     case("AttributeBegin", ":1:1", &["no end"]);
     case("1 2 3", ":1:1", &["unknown directive 1"]);
@@ -220,7 +209,7 @@ fn bad_syntax_is_refused_at_its_place() {
 
 #[test]
 fn roughness_above_one_is_used_and_warned_of() {
-    let scene = load("a.pbrt", "Material \"conductor\" \"float roughness\" 4");
+    let scene = load("a.pbrt", "Material 'conductor' 'float roughness' 4");
     assert_eq!(scene.materials[0].lobe.roughness, isotropic(2.0));
     assert!(scene.warnings[0].contains("a.pbrt:1:22: ") && scene.warnings[0].contains('4'));
 }

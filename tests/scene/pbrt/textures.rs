@@ -19,8 +19,8 @@ fn grey() -> Vec<u8> {
 /// A scene whose only α is the image, under the parameters of its texture.
 fn scene(file: &str, image: Vec<u8>, parameters: &str) -> Scene {
     let text = format!(
-        "Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"{file}\" {parameters}
-         Material \"dielectric\" \"texture roughness\" \"t\" \"bool remaproughness\" false"
+        "Texture 't' 'float' 'imagemap' 'string filename' '{file}' {parameters}
+         Material 'dielectric' 'texture roughness' 't' 'bool remaproughness' false"
     );
     Folder::new(&[(file, image), ("a.pbrt", text.into_bytes())]).load("a.pbrt").unwrap()
 }
@@ -32,7 +32,7 @@ fn check(file: &str, image: Vec<u8>, parameters: &str, sigma: [f64; 2]) {
     assert_close(scene.materials[0].lobe.roughness, sigma, sigma);
 }
 
-const LINEAR: &str = "\"string encoding\" \"linear\"";
+const LINEAR: &str = "'string encoding' 'linear'";
 
 /// 51/255 and 102/255 by the definition of sRGB.
 const DECODED: [f64; 2] = [0.033_104_766_570_885_055, 0.132_868_321_553_817_98];
@@ -45,11 +45,11 @@ fn an_image_is_read_in_the_channels_of_its_filter() {
     let mean = [1.0 / 3.0, 1.6 / 3.0];
     for (filter, sigma) in [
         ("", mean),
-        ("\"string filter\" \"bilinear\"", mean),
-        ("\"string filter\" \"trilinear\"", mean),
-        ("\"string filter\" \"point\"", [0.2, 0.2]),
-        ("\"string filter\" \"ewa\"", [0.2, 1.6 / 3.0]),
-        ("\"string filter\" \"EWA\"", [0.2, 1.6 / 3.0]),
+        ("'string filter' 'bilinear'", mean),
+        ("'string filter' 'trilinear'", mean),
+        ("'string filter' 'point'", [0.2, 0.2]),
+        ("'string filter' 'ewa'", [0.2, 1.6 / 3.0]),
+        ("'string filter' 'EWA'", [0.2, 1.6 / 3.0]),
     ] {
         check("rgb.png", png.clone(), &format!("{LINEAR} {filter}"), sigma);
     }
@@ -64,7 +64,7 @@ fn opacity_counts_where_it_is_not_1_everywhere() {
     };
     check("a.png", image(255), LINEAR, [0.2, 0.4]);
     check("a.png", image(102), LINEAR, [0.4, 1.0]);
-    check("a.png", image(102), &format!("{LINEAR} \"string filter\" \"point\""), [0.2, 0.4]);
+    check("a.png", image(102), &format!("{LINEAR} 'string filter' 'point'"), [0.2, 0.4]);
     // Decoded from sRGB like the colours.
     check("a.png", image(255), "", DECODED);
     check("a.png", image(102), "", [DECODED[1], 1.0]);
@@ -85,8 +85,8 @@ fn only_a_png_has_an_encoding_to_choose() {
     let image = GrayImage::from_pixel(8, 8, Luma([102]));
     let jpeg = encoded(image, ImageFormat::Jpeg);
     check("a.jpg", jpeg, LINEAR, [DECODED[1], DECODED[1]]);
-    let scene = scene("A.PNG", grey(), "\"string encoding\" \"gamma 2.2\"");
-    assert_warned(&scene, ":1:1", &["A.PNG", "other than \"sRGB\" and \"linear\""]);
+    let scene = scene("A.PNG", grey(), "'string encoding' 'gamma 2.2'");
+    assert_warned(&scene, ":1:1", &["A.PNG", "other than 'sRGB' and 'linear'"]);
 }
 
 #[test]
@@ -138,14 +138,14 @@ fn textures_that_double_their_references_take_no_longer() {
     let chain = |length: u32| {
         let texture = |i: u32| {
             format!(
-                "Texture \"t{}\" \"float\" \"mix\" \"texture tex1\" \"t{i}\" \"texture tex2\" \"t{i}\"\n",
+                "Texture 't{}' 'float' 'mix' 'texture tex1' 't{i}' 'texture tex2' 't{i}'\n",
                 i + 1
             )
         };
         let textures: String = (0..length).map(texture).collect();
         format!(
-            "Texture \"t0\" \"float\" \"constant\" \"float value\" 0.25\n{textures}\
-             Material \"conductor\" \"texture roughness\" \"t{length}\""
+            "Texture 't0' 'float' 'constant' 'float value' 0.25\n{textures}\
+             Material 'conductor' 'texture roughness' 't{length}'"
         )
     };
     // One by one, 2^100 references would never be followed to their end.

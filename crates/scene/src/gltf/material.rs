@@ -1,74 +1,79 @@
 //! The lobes of a material.
 
-use microfacet_baker::scene::{Reflectance, Roughness, SceneError};
+use std::array::from_fn;
+
+use microfacet_baker::scene::{Reflectance, Roughness};
 use microfacet_tables::Interval;
 
 use super::Importer;
-use super::parameters::{Clearcoat, Material, TextureInfo};
-use crate::builder::{GGX, Lobe};
+use super::object::Object;
+use crate::Result;
+use crate::builder::Lobe;
 use crate::texture::Channel;
 
-const COAT: &str = "KHR_materials_clearcoat";
+const ANISOTROPY: &str = "KHR_materials_anisotropy";
+const CLEARCOAT: &str = "KHR_materials_clearcoat";
+const GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
+const METALLIC: &str = "pbrMetallicRoughness";
+const SPECULAR: &str = "KHR_materials_specular";
 
-impl Importer<'_> {
+impl<'a> Importer<'a> {
     /// Adds the lobes of a material; what is impossible in one of them costs that one alone.
-    pub(super) fn material(
-        &mut self,
-        name: &str,
-        material: &Material,
-        used: bool,
-    ) -> Result<(), SceneError> {
-        let extensions = &material.extensions;
-        let place = self.place.clone();
-        if extensions.unlit.is_some() {
-            return self.builder.ignore(name, "KHR_materials_unlit", &place, "unlit");
+    pub(super) fn lobes(&mut self, name: &str, material: &Object<'a>, used: bool) -> Result<()> {
+        let place = self.place;
+        let extensions = material.object_or_empty("extensions")?;
+        let has = |extension: &str| extensions.members.contains_key(extension);
+        if has("KHR_materials_unlit") {
+            return self.builder.ignore(name, "KHR_materials_unlit", place, "unlit");
         }
-        let kind = match extensions.specular_glossiness {
-            None => "pbrMetallicRoughness",
-            Some(_) => "KHR_materials_pbrSpecularGlossiness",
-        };
-        if material.reflects_nothing() {
-            let reason = "a dielectric whose specularFactor is 0: its facets reflect nothing";
-            self.builder.ignore(name, kind, &place, reason)?;
-        } else {
-            let read = self.base(name, material, used);
-            self.builder.degrade(name, kind, &place, read)?;
+        let kind = if has(GLOSSINESS) { GLOSSINESS } else { METALLIC };
+        match reflects_nothing(material, &extensions) {
+            Ok(true) => {
+                let reason = "a dielectric whose specularFactor is 0: its facets reflect nothing";
+                self.builder.ignore(name, kind, place, reason)?;
+            }
+            // What cannot be read is said where the lobe is.
+            Ok(false) | Err(_) => {
+                let read = self.base(name, material, &extensions, used);
+                self.builder.degrade(name, kind, place, read)?;
+            }
         }
-        if let Some(coat) = &extensions.clearcoat {
-            let read = self.coat(name, coat, used);
-            self.builder.degrade(&format!("{name}.clearcoat"), COAT, &place, read)?;
+        if has(CLEARCOAT) {
+            let read = self.coat(name, &extensions, used);
+            self.builder.degrade(&format!("{name}.clearcoat"), CLEARCOAT, place, read)?;
         }
-        if extensions.sheen.is_some() {
+        if has("KHR_materials_sheen") {
             let name = format!("{name}.sheen");
             let reason = "a fabric's distribution (Charlie), not a Student-t one";
-            self.builder.ignore(&name, "KHR_materials_sheen", &place, reason)?;
+            self.builder.ignore(&name, "KHR_materials_sheen", place, reason)?;
         }
         Ok(())
     }
 
     /// Adds the main lobe.
-    fn base(&mut self, name: &str, material: &Material, used: bool) -> Result<(), SceneError> {
-        let extensions = &material.extensions;
-        let roughness = match &extensions.specular_glossiness {
+    fn base(
+        &mut self,
+        name: &str,
+        material: &Object<'a>,
+        extensions: &Object<'a>,
+        used: bool,
+    ) -> Result<()> {
+        let roughness = match extensions.object(GLOSSINESS)? {
             None => {
-                let pbr = &material.pbr_metallic_roughness;
-                let texture = pbr.metallic_roughness_texture.as_ref();
-                self.factor("roughnessFactor", pbr.roughness_factor, texture, Channel::Green)?
+                let pbr = material.object_or_empty(METALLIC)?;
+                let texture = ("metallicRoughnessTexture", Channel::Green);
+                self.factor(&pbr, ("roughnessFactor", 1.0), texture)?
             }
             Some(pbr) => {
-                let texture = pbr.specular_glossiness_texture.as_ref();
-                self.factor("glossinessFactor", pbr.glossiness_factor, texture, Channel::Alpha)?
-                    .map_falling(|glossiness| 1.0 - glossiness)
+                let texture = ("specularGlossinessTexture", Channel::Alpha);
+                let glossiness = self.factor(&pbr, ("glossinessFactor", 1.0), texture)?;
+                glossiness.map_falling(|glossiness| 1.0 - glossiness)
             }
         };
         let alpha = roughness.map_rising(|r| r * r);
-        let strength = match &extensions.anisotropy {
-            None => Interval::point(0.0),
-            Some(a) => {
-                let texture = a.anisotropy_texture.as_ref();
-                self.factor("anisotropyStrength", a.anisotropy_strength, texture, Channel::Blue)?
-            }
-        };
+        let anisotropy = extensions.object_or_empty(ANISOTROPY)?;
+        let texture = ("anisotropyTexture", Channel::Blue);
+        let strength = self.factor(&anisotropy, ("anisotropyStrength", 0.0), texture)?;
         let roughness = if strength.max == 0.0 {
             Roughness::isotropic(alpha)
         } else {
@@ -79,63 +84,101 @@ impl Importer<'_> {
             };
             Roughness::anisotropic(along, alpha)
         };
-        let fresnel = material.fresnel().map_err(|why| {
-            // The place is the whole file.
-            self.place.invalid(format!("material \"{name}\": {why}"))
-        });
-        let without = (None, "the lobe is read without its Fresnel term");
-        let fresnel = self.builder.or_warn(fresnel, without)?;
-        self.lobe(name, used, None, roughness, fresnel)
+        // The place is the whole file.
+        let fresnel = fresnel(material, extensions)
+            .map_err(|why| self.place.invalid(format!("material \"{name}\": {}", why.kind)));
+        let fresnel = self.builder.without_fresnel(fresnel, None)?;
+        self.builder.add(name, self.place, used, Lobe::ggx(None, roughness, fresnel))
     }
 
     /// Adds the lobe of a clearcoat, unless its factor is 0.
-    fn coat(&mut self, name: &str, coat: &Clearcoat, used: bool) -> Result<(), SceneError> {
-        if self.factor("clearcoatFactor", coat.clearcoat_factor, None, Channel::Red)?.max == 0.0 {
+    fn coat(&mut self, name: &str, extensions: &Object<'a>, used: bool) -> Result<()> {
+        let coat = extensions.object_or_empty(CLEARCOAT)?;
+        if coat.unit("clearcoatFactor", 0.0)? == 0.0 {
             return Ok(());
         }
-        let texture = coat.clearcoat_roughness_texture.as_ref();
-        let factor = coat.clearcoat_roughness_factor;
-        let roughness = self.factor("clearcoatRoughnessFactor", factor, texture, Channel::Green)?;
+        let texture = ("clearcoatRoughnessTexture", Channel::Green);
+        let roughness = self.factor(&coat, ("clearcoatRoughnessFactor", 0.0), texture)?;
         let roughness = Roughness::isotropic(roughness.map_rising(|r| r * r));
         // The coat's index of refraction is fixed at 1.5 (KHR_materials_clearcoat).
         let fresnel = Some(Reflectance::Schlick([0.04; 3]));
-        self.lobe(name, used, Some("clearcoat"), roughness, fresnel)
-    }
-
-    fn lobe(
-        &mut self,
-        material: &str,
-        used: bool,
-        name: Option<&'static str>,
-        roughness: Roughness,
-        fresnel: Option<Reflectance>,
-    ) -> Result<(), SceneError> {
-        let lobe = Lobe { name, roughness, gamma: GGX, fresnel, masking: None };
-        self.builder.add(material, &self.place, used, lobe)
+        self.builder.add(name, self.place, used, Lobe::ggx(Some("clearcoat"), roughness, fresnel))
     }
 
     /// A factor in [0, 1], times a channel of a texture if there is one.
     fn factor(
         &mut self,
-        key: &str,
-        factor: f64,
-        texture: Option<&TextureInfo>,
-        channel: Channel,
-    ) -> Result<Interval, SceneError> {
-        let factor = unit(key, factor).map_err(|why| self.place.invalid(why))?;
-        let range = match texture {
-            Some(texture) => self.image(texture.index, channel),
+        object: &Object<'a>,
+        (name, default): (&str, f64),
+        (texture, channel): (&str, Channel),
+    ) -> Result<Interval> {
+        let factor = object.unit(name, default)?;
+        let range = match object.object(texture)? {
+            Some(texture) => self.image(texture.required_index("index")?, channel),
             None => Interval::point(1.0),
         };
         Ok(range.map_rising(|x| x * factor))
     }
 }
 
-/// A factor, which must be in [0, 1].
-pub(super) fn unit(key: &str, factor: f64) -> Result<f64, String> {
-    if (0.0..=1.0).contains(&factor) {
-        Ok(factor)
-    } else {
-        Err(format!("{key} is {factor}; it must be from 0 to 1"))
+/// Whether it is a dielectric without reflection, by a `specularFactor` of 0
+/// (`KHR_materials_specular`), and without transmission, which passes through the same facets.
+fn reflects_nothing(material: &Object<'_>, extensions: &Object<'_>) -> Result<bool> {
+    let others = [GLOSSINESS, "KHR_materials_transmission"];
+    Ok(extensions.object_or_empty(SPECULAR)?.number("specularFactor", 1.0)? == 0.0
+        && material.object_or_empty(METALLIC)?.number("metallicFactor", 1.0)? == 0.0
+        && !others.iter().any(|&other| extensions.members.contains_key(other)))
+}
+
+/// Schlick's reflectance with F90 = 1 where that is what the material has, with the same F0
+/// everywhere.
+fn fresnel(material: &Object<'_>, extensions: &Object<'_>) -> Result<Option<Reflectance>> {
+    let has_texture = |object: &Object<'_>, names: [&str; 2]| {
+        names.iter().any(|&name| object.members.contains_key(name))
+    };
+    // With a factor of 0, the default, there is no film, whatever its texture.
+    let film = extensions.object_or_empty("KHR_materials_iridescence")?;
+    if film.unit("iridescenceFactor", 0.0)? > 0.0 {
+        return Ok(None);
     }
+    if let Some(pbr) = extensions.object(GLOSSINESS)? {
+        let f0 = pbr.colour("specularFactor", pbr.numbers("specularFactor", [1.0; 3])?)?;
+        let varies = pbr.members.contains_key("specularGlossinessTexture");
+        return Ok((!varies).then_some(Reflectance::Schlick(f0)));
+    }
+    let pbr = material.object_or_empty(METALLIC)?;
+    let metallic = pbr.unit("metallicFactor", 1.0)?;
+    let base = match pbr.numbers("baseColorFactor", [1.0; 4])? {
+        // A dielectric's F0 does not depend on it.
+        _ if metallic == 0.0 => [0.0; 3],
+        [r, g, b, _] => pbr.colour("baseColorFactor", [r, g, b])?,
+    };
+    if metallic > 0.0 && has_texture(&pbr, ["baseColorTexture", "metallicRoughnessTexture"]) {
+        return Ok(None);
+    }
+    if metallic == 1.0 {
+        return Ok(Some(Reflectance::Schlick(base)));
+    }
+    let ior = extensions.object_or_empty("KHR_materials_ior")?;
+    let index = ior.number("ior", 1.5)?;
+    if !(index >= 1.0 || index == 0.0) {
+        return Err(ior.invalid(format!("ior is {index}; it must be 0, or at least 1")));
+    }
+    // An index of 0 asks for total reflection (KHR_materials_ior); the formula gives 1 there.
+    let amplitude = (index - 1.0) / (index + 1.0);
+    let specular = extensions.object_or_empty(SPECULAR)?;
+    // F90 is the factor: at 1 alone the form is Schlick's with F90 = 1.
+    if specular.unit("specularFactor", 1.0)? != 1.0
+        || has_texture(&specular, ["specularTexture", "specularColorTexture"])
+    {
+        return Ok(None);
+    }
+    let tint = specular.numbers("specularColorFactor", [1.0; 3])?;
+    if let Some(negative) = tint.iter().find(|&&tint| tint < 0.0) {
+        let why = format!("specularColorFactor has {negative}; it must be 0 or more");
+        return Err(specular.invalid(why));
+    }
+    let dielectric = tint.map(|tint| (amplitude * amplitude * tint).min(1.0));
+    let f0 = from_fn(|i| dielectric[i] * (1.0 - metallic) + base[i] * metallic);
+    Ok(Some(Reflectance::Schlick(f0)))
 }

@@ -20,9 +20,8 @@
 //!   `iridescenceFactor` of `KHR_materials_iridescence` is not 0. A dielectric whose
 //!   `specularFactor` is 0 reflects nothing; unless it transmits, it has no lobe.
 //! - `KHR_materials_sheen` has a distribution of its own; `KHR_materials_unlit` has no lobe.
-//! - A factor out of its range costs its lobe, or its Fresnel term, alone; a value of a wrong kind
-//!   costs the material, the texture or the mesh that it is in. A member that is null is absent.
-//!   Indices may be written as `1.0`.
+//! - A value that is out of its range or of a wrong kind costs its lobe, its Fresnel term, its
+//!   texture or its mesh alone. A member that is null is absent. Indices may be written as `1.0`.
 //! - `extensionsRequired` lists what a reader has to know (3.12): a material with one of those that
 //!   is not known here is not understood. Others of a material are warned of, unless they leave its
 //!   lobes as they are, and so is a member that glTF does not have. `extras` may hold anything.
@@ -31,85 +30,92 @@
 //!
 //! [spec]: https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html
 
-mod fresnel;
-mod ignored;
 mod image;
 mod material;
-mod parameters;
-mod schema;
-mod value;
+mod names;
+mod object;
 
 use std::borrow::Cow;
-use std::cell::RefCell;
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 use std::io::{self, Read};
-use std::path::{Path, PathBuf};
+use std::path::Path;
+
+use serde_json::value::RawValue;
 
 use microfacet_baker::input;
-use microfacet_baker::scene::{Format, Lines, Place, Scene, SceneError};
+use microfacet_baker::scene::{Format, Lines, Place, Scene};
+use microfacet_tables::Interval;
 
-use self::parameters::{Material, Named};
-use self::schema::{Document, Mesh};
-use self::value::{Unknown, VERSION_1, Value, message};
-use super::builder::Builder;
-use super::texture::Textures;
+use self::image::Images;
+use self::object::{Object, message};
+use crate::Result;
+use crate::builder::Builder;
 use crate::limits;
+use crate::texture::Channel;
+
+/// What a file of version 1 is, and what to do with it.
+const VERSION_1: &str = "glTF 1.0, and only version 2.0 is read; convert it: \
+                         `gltf-pipeline -i old.gltf -o new.gltf` (CesiumGS)";
 
 /// Reads a glTF 2.0 scene.
-pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
+pub(super) fn load(path: &Path) -> Result<Scene> {
     let place = Place::file(path);
-    let (json, binary) = read(path, &place)?;
-    // Programs write names in encodings of their own; they have no say in what is read.
+    let (json, chunk) = read(path, &place)?;
+    // Programs write names in encodings of their own, and no name decides what is read.
     let json = String::from_utf8_lossy(input::unmarked(&json));
-    let document: Document<'_> = serde_json::from_str(&json).map_err(|error| {
+    let document: &RawValue = serde_json::from_str(&json).map_err(|error| {
         Lines::new(path, json.as_bytes())
             .after_feeds(error.line(), error.column().saturating_sub(1))
             .syntax(message(&error))
     })?;
-    let version = &document.asset.version;
+    let document = Object::new(&place, String::new(), document)?;
+    let asset = document.object_or_empty("asset")?;
+    // Drafts of version 1 have a number in the place of a text, or nothing.
+    let version = asset.members.get("version").map_or("1", |text| text.get().trim_matches('"'));
     match version.split('.').next() {
         Some("2") => {}
-        Some("1") => return Err(place.invalid(format!("this is {VERSION_1}"))),
+        Some("1") => {
+            return Err(place
+                .invalid(format!("by its asset.version, or the lack of it, this is {VERSION_1}")));
+        }
         _ => return Err(place.invalid(format!("this is glTF {version}; only version 2 is read"))),
     }
     let mut importer = Importer {
         builder: Builder::new(Format::Gltf),
-        folder: path.parent().unwrap_or(Path::new("")),
-        place,
-        document: &document,
-        binary,
-        embedded: Textures::default(),
+        place: &place,
+        images: Images {
+            place: &place,
+            folder: path.parent().unwrap_or(Path::new("")).to_owned(),
+            chunk,
+            textures: document.list("textures")?,
+            images: document.list("images")?,
+            views: document.list("bufferViews")?,
+            buffers: document.list("buffers")?,
+        },
+        ranges: HashMap::new(),
     };
     if matches!(json, Cow::Owned(_)) {
         let warning = "the JSON is not UTF-8; what is not has a \u{fffd} in its place";
-        importer.builder.warn(&importer.place, warning);
+        importer.builder.warn(&place, warning);
     }
-    importer.materials()?;
+    importer.materials(&document)?;
     Ok(importer.builder.finish(Vec::new()))
 }
-
-/// What the names of Khronos' extensions of materials begin with.
-const KHRONOS: &str = "KHR_materials_";
 
 /// What helps where the JSON is too large.
 const SEPARATE: &str = "export images and geometry to files of their own";
 
-/// A range of bytes in a file.
-struct Section {
-    file: PathBuf,
-    start: u64,
-}
-
-/// The JSON text, and where the binary chunk is if the file is a container (specification, 4).
-fn read(path: &Path, place: &Place) -> Result<(Vec<u8>, Option<Section>), SceneError> {
+/// The JSON text, and where the content of the binary chunk begins if the file is a container
+/// (specification, 4).
+fn read(path: &Path, place: &Place) -> Result<(Vec<u8>, Option<u64>)> {
     let io = |error| place.io(error);
     // Of a container only the JSON is read, and images as they are asked for.
     let mut file = input::open(path, u64::MAX).map_err(io)?;
     let mut head = Vec::new();
     file.by_ref().take(20).read_to_end(&mut head).map_err(io)?;
     if !head.starts_with(b"glTF") {
-        let json = input::read(path, limits::JSON).map_err(|error| match error.kind() {
-            io::ErrorKind::FileTooLarge => place.invalid(format!("it {error}; {SEPARATE}")),
+        let json = input::read(path, limits::TEXT).map_err(|error| match error.kind() {
+            io::ErrorKind::FileTooLarge => place.too_large(format!("it {error}; {SEPARATE}")),
             _ => io(error),
         });
         return Ok((json?, None));
@@ -122,10 +128,10 @@ fn read(path: &Path, place: &Place) -> Result<(Vec<u8>, Option<Section>), SceneE
         return Err(place.syntax("this is no glTF container of version 2 that begins with JSON"));
     }
     let size = u64::from(word(12));
-    if size > limits::JSON {
+    if size > limits::TEXT {
         return Err(place.too_large(format!(
             "the JSON of the glTF container has {size} bytes, and at most {} MiB are read; {SEPARATE}",
-            limits::JSON >> 20
+            limits::TEXT >> 20
         )));
     }
     let mut json = Vec::new();
@@ -134,101 +140,107 @@ fn read(path: &Path, place: &Place) -> Result<(Vec<u8>, Option<Section>), SceneE
         return Err(place.syntax("the glTF container ends inside its JSON"));
     }
     // The binary chunk has a header of its own: length and type.
-    let binary = Section { file: path.to_owned(), start: 20 + size + 8 };
-    Ok((json, Some(binary)))
+    Ok((json, Some(20 + size + 8)))
 }
 
 struct Importer<'a> {
     builder: Builder,
-    folder: &'a Path,
-    place: Place,
-    document: &'a Document<'a>,
-    binary: Option<Section>,
-    /// Images in the document or its buffers, by their number.
-    embedded: Textures<usize>,
+    place: &'a Place,
+    images: Images<'a>,
+    /// Ranges of the textures that were read.
+    ranges: HashMap<(u64, Channel), Interval>,
 }
 
 /// What meshes use.
+#[derive(Default)]
 struct Used {
-    materials: BTreeSet<usize>,
+    materials: BTreeSet<u64>,
     /// Whether any material may be used: there are no meshes, or one cannot be read.
     any: bool,
     /// Whether a primitive has no material.
     default: bool,
 }
 
-impl Importer<'_> {
-    fn materials(&mut self) -> Result<(), SceneError> {
-        let document = self.document;
-        let used = self.used();
-        let required = document.extensions_required.iter();
-        let required = required.filter_map(|text| Value::of(text).read().ok()).collect();
-        for (i, text) in document.materials.iter().enumerate() {
-            let named = Value::of(text).read::<Named>().ok().and_then(|named| named.name);
-            let name = match named {
-                Some(name) if !name.is_empty() => name,
-                _ => format!("material {i}"),
-            };
-            let used = used.any || used.materials.contains(&i);
-            let unknown = RefCell::default();
-            match Value::of(text).requiring(&required).noting(&unknown).read() {
-                Ok(material) => {
-                    self.check_names(&name, unknown.into_inner());
-                    self.material(&name, &material, used)?;
-                }
-                Err(why) => self.builder.not_understood(&name, "material", &self.place, why)?,
-            }
+impl<'a> Importer<'a> {
+    fn materials(&mut self, document: &Object<'a>) -> Result<()> {
+        let materials = document.list("materials")?;
+        let used = self.used(&document.list("meshes")?, materials.len() as u64);
+        let required = document.list("extensionsRequired")?;
+        // What is no name requires nothing.
+        let required = required.iter().filter_map(|text| serde_json::from_str(text.get()).ok());
+        let required: BTreeSet<String> = required.collect();
+        for (i, text) in materials.into_iter().enumerate() {
+            let used = used.any || used.materials.contains(&(i as u64));
+            let number = format!("material {i}");
+            let material = Object::new(self.place, String::new(), text);
+            let name = material.as_ref().ok().and_then(|material| material.text("name").ok()?);
+            let name = name.filter(|name| !name.is_empty()).unwrap_or(number);
+            let read = material.and_then(|material| {
+                check_required(&material, &required)?;
+                self.check_names(&name, "", &material);
+                self.lobes(&name, &material, used)
+            });
+            self.builder.degrade(&name, "material", self.place, read)?;
         }
         // A primitive without a material has the default one (specification, 3.7.2.1).
         if used.default {
-            self.material("default material", &Material::default(), true)?;
+            let default = serde_json::from_str("{}").map_err(|why| self.place.io(why.into()))?;
+            let default = Object::new(self.place, String::new(), default)?;
+            self.lobes("default material", &default, true)?;
         }
         Ok(())
     }
 
-    /// Warns of what is not known in a material.
-    fn check_names(&mut self, material: &str, unknown: Vec<Unknown>) {
-        for Unknown { object, name, known } in unknown {
-            if object == "extensions" {
-                // The beginning would make all of them alike.
-                let stem = |name: &'static str| name.strip_prefix(KHRONOS).unwrap_or(name);
-                let own = name.strip_prefix(KHRONOS).unwrap_or(&name);
-                let hint = self.builder.did_you_mean(own, known.into_iter().map(stem));
-                let extension = format!("the extension {name} of material \"{material}\"");
-                let warning = format!("{extension} is not read{hint}; its lobes are without it");
-                self.builder.warn(&self.place, warning);
-            } else {
-                let of = if object.is_empty() { "" } else { " of " };
-                let owner = format!("{object}{of}material \"{material}\"");
-                self.builder.check_name(&owner, &name, &known, &self.place);
+    fn used(&mut self, meshes: &[&'a RawValue], count: u64) -> Used {
+        let mut used = Used { any: meshes.is_empty(), ..Used::default() };
+        for (i, mesh) in meshes.iter().enumerate() {
+            if let Err(why) = use_of(self.place, mesh, &mut used) {
+                used.any = true;
+                let why = why.kind;
+                let warning =
+                    format!("mesh {i} cannot be read ({why}); all materials count as used");
+                self.builder.warn(self.place, warning);
             }
         }
-    }
-
-    fn used(&mut self) -> Used {
-        let Document { meshes, materials, .. } = self.document;
-        let mut used = Used { materials: BTreeSet::new(), any: meshes.is_empty(), default: false };
-        for (i, text) in meshes.iter().enumerate() {
-            match Value::of(text).read::<Mesh>() {
-                Ok(mesh) => {
-                    used.materials.extend(mesh.materials);
-                    used.default |= mesh.uses_default;
-                }
-                Err(why) => {
-                    used.any = true;
-                    let warning =
-                        format!("mesh {i} cannot be read ({why}); all materials count as used");
-                    self.builder.warn(&self.place, warning);
-                }
-            }
-        }
-        let count = materials.len();
         for index in used.materials.range(count..) {
             let warning = format!(
                 "a mesh refers to material {index}, but there are {count} materials, counted from 0"
             );
-            self.builder.warn(&self.place, warning);
+            self.builder.warn(self.place, warning);
         }
         used
+    }
+}
+
+/// Notes which materials a mesh uses.
+fn use_of<'a>(place: &'a Place, mesh: &'a RawValue, used: &mut Used) -> Result<()> {
+    let mesh = Object::new(place, String::new(), mesh)?;
+    if !mesh.members.contains_key("primitives") {
+        return Err(mesh.invalid("primitives is missing"));
+    }
+    for primitive in mesh.objects("primitives")? {
+        let material = primitive.index("material")?;
+        used.default |= material.is_none();
+        used.materials.extend(material);
+        let extensions = primitive.object_or_empty("extensions")?;
+        let variants = extensions.object_or_empty("KHR_materials_variants")?;
+        for mapping in variants.objects("mappings")? {
+            used.materials.insert(mapping.required_index("material")?);
+        }
+    }
+    Ok(())
+}
+
+/// Checks that a material has no extension that is required and not known.
+fn check_required(material: &Object<'_>, required: &BTreeSet<String>) -> Result<()> {
+    let known = names::extensions();
+    let extensions = material.object_or_empty("extensions")?;
+    let mut own = extensions.members.keys().filter(|name| required.contains(*name));
+    match own.find(|name| !known.contains(&&name[..])) {
+        Some(name) => {
+            let why = format!("{name} is not known here, and extensionsRequired has it");
+            Err(extensions.invalid(why))
+        }
+        None => Ok(()),
     }
 }

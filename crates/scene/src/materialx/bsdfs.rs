@@ -7,9 +7,10 @@ use super::Reader;
 use super::connect::named;
 use super::graph::{negated, sum};
 use super::index::{At, Scope};
-use super::inputs::NO_FRESNEL;
-use super::shaders::{LEAST_ALPHA, Model, lobe, schlick, stretched};
-use crate::builder::{Lobe, conductor};
+use super::shaders::{LEAST_ALPHA, Model, schlick, stretched};
+use crate::Result;
+use crate::builder::Lobe;
+use crate::fresnel::conductor;
 use crate::texture::Channel;
 use crate::xml::Element;
 
@@ -27,8 +28,8 @@ impl<'a> Reader<'a> {
         used: bool,
         at: At<'a>,
         output: Option<&'a str>,
-    ) -> Result<(), SceneError> {
-        let (class, place) = (&at.node().tag, &at.node().place);
+    ) -> Result<()> {
+        let (class, place) = (&at.node.tag, &at.node.place);
         let parts = self.parts(at, output)?;
         let is_alone = parts.microfacets.len() + parts.unknown.len() + parts.broken.len() == 1;
         let part = |node: &Element| match is_alone {
@@ -39,7 +40,7 @@ impl<'a> Reader<'a> {
         let mut fabric = parts.fabric.then_some("sheen");
         let mut failed = !parts.broken.is_empty();
         for (at, film) in parts.microfacets {
-            let node = at.node();
+            let node = at.node;
             match self.microfacets(at, film) {
                 Ok(model) => {
                     // An interface that reflects and transmits is one lobe, and may be two nodes.
@@ -76,26 +77,18 @@ impl<'a> Reader<'a> {
         for lobe in lobes {
             self.builder.add(name, place, used, lobe)?;
         }
-        let is_empty = !has_lobes && !failed && parts.unknown.is_empty();
+        if !has_lobes && !failed && parts.unknown.is_empty() {
+            let none = if fabric.is_some() { FABRIC } else { "has no BSDF of a weight above 0" };
+            self.builder.ignore(name, class, place, parts.reason.unwrap_or(none))?;
+            fabric = fabric.filter(|_| parts.reason.is_some());
+        }
         match fabric {
-            Some(_) if is_empty && parts.reason.is_none() => {
-                self.builder.ignore(name, class, place, FABRIC)
-            }
-            Some(fabric) => {
-                if is_empty {
-                    self.builder.ignore(name, class, place, parts.reason.unwrap_or(DIFFUSE))?;
-                }
-                self.builder.ignore(&format!("{name}.{fabric}"), class, place, FABRIC)
-            }
-            None if is_empty => {
-                let reason = parts.reason.unwrap_or("has no BSDF of a weight above 0");
-                self.builder.ignore(name, class, place, reason)
-            }
+            Some(fabric) => self.builder.ignore(&format!("{name}.{fabric}"), class, place, FABRIC),
             None => Ok(()),
         }
     }
 
-    fn microfacets(&mut self, at: At<'a>, film: bool) -> Result<Model, SceneError> {
+    fn microfacets(&mut self, at: At<'a>, film: bool) -> Result<Model> {
         if let Some(mut model) = self.model(at)? {
             for lobe in &mut model.lobes {
                 lobe.fresnel = lobe.fresnel.filter(|_| !film);
@@ -105,29 +98,29 @@ impl<'a> Reader<'a> {
         if self.greatest(at, "weight", 1.0)? <= 0.0 {
             return Ok(Model::default());
         }
-        let distribution = self.index.given(at.node(), "distribution");
+        let distribution = self.index.given(at.node, "distribution");
         if let Some(name) = distribution.and_then(|input| input.attribute("value"))
             && name != "ggx"
         {
             return Err(at
-                .node()
+                .node
                 .place
                 .invalid(format!("the distribution \"{name}\" is not known; MaterialX has ggx")));
         }
-        if let Some(retro) = self.index.given(at.node(), "retroreflective")
+        if let Some(retro) = self.index.given(at.node, "retroreflective")
             && retro.attribute("value") != Some("false")
         {
             self.builder.warn(&retro.place, "retroreflective is not read; the lobe is without it");
         }
         let roughness = self.alpha(at)?;
         let film = self.film(at, "thinfilm_thickness")? || film;
-        let (name, fresnel) = match &at.node().tag[..] {
+        let (name, fresnel) = match &at.node.tag[..] {
             "conductor_bsdf" => {
                 // The defaults of the node's definition.
                 let n = self.colour(at, "ior", [0.183, 0.421, 1.373])?;
                 let k = self.colour(at, "extinction", [3.424, 2.346, 1.770])?;
-                let fresnel = n.zip(k).map(|(n, k)| conductor(n, k, &at.node().place)).transpose();
-                (BSDF_LOBES[0], self.builder.or_warn(fresnel, NO_FRESNEL)?)
+                let fresnel = n.zip(k).map(|(n, k)| conductor(n, k, &at.node.place)).transpose();
+                (BSDF_LOBES[0], self.builder.without_fresnel(fresnel, None)?)
             }
             "dielectric_bsdf" => (BSDF_LOBES[1], self.dielectric(at, "ior", 1.5)?),
             _ => {
@@ -140,16 +133,16 @@ impl<'a> Reader<'a> {
             }
         };
         let fresnel: Option<Reflectance> = fresnel.filter(|_| !film);
-        Ok(Model { lobes: vec![lobe(Some(name), roughness, fresnel)], ..Model::default() })
+        Ok(Model { lobes: vec![Lobe::ggx(Some(name), roughness, fresnel)], ..Model::default() })
     }
 
     /// The input "roughness" of a BSDF, which is α along both axes.
-    fn alpha(&mut self, at: At<'a>) -> Result<Roughness, SceneError> {
-        let Some(input) = self.index.given(at.node(), "roughness") else {
+    fn alpha(&mut self, at: At<'a>) -> Result<Roughness> {
+        let Some(input) = self.index.given(at.node, "roughness") else {
             return Ok(Roughness::isotropic(Interval::point(0.05)));
         };
         if let Some((source, _)) = self.resolve(input, at.scope)? {
-            let roughness = match &source.node().tag[..] {
+            let roughness = match &source.node.tag[..] {
                 "roughness_anisotropy" => Some(self.input(source, "roughness", 0.0)?),
                 "glossiness_anisotropy" => {
                     let gloss = self.input(source, "glossiness", 1.0)?;
@@ -175,13 +168,13 @@ impl<'a> Reader<'a> {
     }
 
     /// Whether both numbers of a pair are the same at every point: they come from one number.
-    fn is_grey(&self, input: &'a Element, scope: Scope<'a>) -> Result<bool, SceneError> {
+    fn is_grey(&self, input: &'a Element, scope: Scope<'a>) -> Result<bool> {
         let mut end = At::new(input, scope);
         for _ in 0..16 {
-            let Some((source, _)) = self.resolve(end.node(), end.scope)? else {
+            let Some((source, _)) = self.resolve(end.node, end.scope)? else {
                 return Ok(false);
             };
-            let node = source.node();
+            let node = source.node;
             let next = match &node.tag[..] {
                 _ if node.attribute("type") == Some("float") => return Ok(true),
                 "dot" | "convert" => "in",

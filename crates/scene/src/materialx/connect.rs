@@ -4,9 +4,11 @@ use microfacet_baker::scene::SceneError;
 
 use super::Reader;
 use super::index::{At, Scope};
+use crate::Result;
+use crate::limits;
+use crate::references::circle;
 use crate::texture::Channel;
-use crate::xml::{Element, Key};
-use crate::{cycle, limits};
+use crate::xml::Element;
 
 /// Longer chains of outputs and interfaces than this are refused.
 const MAX_STEPS: usize = 128;
@@ -27,11 +29,7 @@ pub(super) type Source<'a> = (At<'a>, Option<&'a str>);
 impl<'a> Reader<'a> {
     /// The input, output or node that an input or output in `scope` is connected to, with the scope
     /// of that; `None` if it has a value of its own.
-    pub(super) fn target(
-        &self,
-        input: &'a Element,
-        scope: Scope<'a>,
-    ) -> Result<Option<At<'a>>, SceneError> {
+    pub(super) fn target(&self, input: &'a Element, scope: Scope<'a>) -> Result<Option<At<'a>>> {
         if let Some(name) = input.attribute("interfacename") {
             let found = self.interface(scope, name);
             return found.map(Some).ok_or_else(|| undefined(input, "interface", name));
@@ -42,7 +40,7 @@ impl<'a> Reader<'a> {
             return self.output(input, graph).map(Some);
         }
         if let Some(name) = input.attribute("nodename") {
-            let node = self.index.child(scope.graph.0, name);
+            let node = self.index.child(scope.graph, name);
             let node = node.ok_or_else(|| undefined(input, "node", name))?;
             return match &node.tag[..] {
                 "nodegraph" => self.output(input, node).map(Some),
@@ -58,10 +56,10 @@ impl<'a> Reader<'a> {
 
     /// The input that gives a graph in `scope` the value of its interface.
     fn interface(&self, scope: Scope<'a>, name: &'a str) -> Option<At<'a>> {
-        let (graph, document) = (scope.graph.0, Scope::of(self.root));
+        let (graph, document) = (scope.graph, Scope::of(self.root));
         let instance = scope.instance.checked_sub(1).map(|number| &self.instances[number]);
-        if let Some(instance) = instance.filter(|instance| std::ptr::eq(instance.graph, graph)) {
-            if let Some(input) = self.index.given(instance.at.node(), name) {
+        if let Some(instance) = instance.filter(|instance| instance.graph == graph) {
+            if let Some(input) = self.index.given(instance.at.node, name) {
                 return Some(At::new(input, instance.at.scope));
             }
             let default = self.index.child(instance.definition, name);
@@ -70,7 +68,7 @@ impl<'a> Reader<'a> {
                 .map(|input| At::new(input, document));
         }
         // An input in the document's own scope would refer to itself.
-        if std::ptr::eq(graph, self.root) {
+        if graph == self.root {
             return None;
         }
         let definition = || self.index.child(self.root, graph.attribute("nodedef")?);
@@ -80,7 +78,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The output of `graph` that `input` is connected to, with its scope.
-    fn output(&self, input: &'a Element, graph: &'a Element) -> Result<At<'a>, SceneError> {
+    fn output(&self, input: &'a Element, graph: &'a Element) -> Result<At<'a>> {
         let name = input.attribute("output").unwrap_or_default();
         let output = self.index.output(graph, name);
         output
@@ -93,12 +91,12 @@ impl<'a> Reader<'a> {
         &self,
         input: &'a Element,
         scope: Scope<'a>,
-    ) -> Result<Option<Source<'a>>, SceneError> {
+    ) -> Result<Option<Source<'a>>> {
         let mut end = At::new(input, scope);
         for _ in 0..MAX_STEPS {
-            let Some(next) = self.target(end.node(), end.scope)? else { return Ok(None) };
-            if !is_end(end.node(), next.node()) {
-                return Ok(Some((next, end.node().attribute("output"))));
+            let Some(next) = self.target(end.node, end.scope)? else { return Ok(None) };
+            if !is_end(end.node, next.node) {
+                return Ok(Some((next, end.node.attribute("output"))));
             }
             end = next;
         }
@@ -109,26 +107,37 @@ impl<'a> Reader<'a> {
 
     /// The scope of the graph that implements a node, if the document defines the node; the same
     /// scope for the same node.
-    pub(super) fn enter(&mut self, at: At<'a>) -> Result<Option<Scope<'a>>, SceneError> {
-        let node = at.node();
+    pub(super) fn enter(&mut self, at: At<'a>) -> Result<Option<Scope<'a>>> {
+        let node = at.node;
         let Some(definition) = self.index.definition(node) else { return Ok(None) };
         let Some(graph) = self.index.implementation(definition) else { return Ok(None) };
         if let Some(&known) = self.entered.get(&at) {
             return Ok(Some(known));
         }
+        self.count(node)?;
         let outer = at.scope.instance.checked_sub(1).map(|number| self.instances[number].depth);
         let depth = outer.unwrap_or(0) + 1;
-        if depth > MAX_INSTANCES_DEEP || self.instances.len() == limits::INSTANCES {
+        if depth > MAX_INSTANCES_DEEP {
             return Err(node.place.invalid(format!(
                 "nodes are used in the graphs that define others more than {MAX_INSTANCES_DEEP} \
-                 deep or {} times; is one a part of itself?",
-                limits::INSTANCES
+                 deep; is one a part of itself?"
             )));
         }
         self.instances.push(Instance { at, definition, graph, depth });
-        let scope = Scope { graph: graph.key(), instance: self.instances.len() };
+        let scope = Scope { graph, instance: self.instances.len() };
         self.entered.insert(at, scope);
         Ok(Some(scope))
+    }
+
+    /// Counts a node that is followed.
+    pub(super) fn count(&self, node: &Element) -> Result<()> {
+        if self.left.take(1) {
+            return Ok(());
+        }
+        Err(node.place.invalid(format!(
+            "the materials have more than {} nodes in all; split the document",
+            limits::NODES
+        )))
     }
 
     /// The output of a node that the document defines, in the graph that implements it.
@@ -136,12 +145,12 @@ impl<'a> Reader<'a> {
         &mut self,
         at: At<'a>,
         output: Option<&'a str>,
-    ) -> Result<Option<At<'a>>, SceneError> {
+    ) -> Result<Option<At<'a>>> {
         let Some(scope) = self.enter(at)? else { return Ok(None) };
         let name = output.unwrap_or_default();
-        let found = self.index.output(scope.graph.0, name);
+        let found = self.index.output(scope.graph, name);
         // Graphs of one output may name it otherwise than their definition.
-        let found = found.or_else(|| self.index.output(scope.graph.0, ""));
+        let found = found.or_else(|| self.index.output(scope.graph, ""));
         Ok(found.map(|output| At::new(output, scope)))
     }
 
@@ -153,14 +162,14 @@ impl<'a> Reader<'a> {
             .into_iter()
             .chain(graphs)
             .flat_map(|graph| graph.children.iter().map(|e| At::new(e, Scope::of(graph))));
-        let connected = |At { key: Key(element), scope }: At<'a>| {
-            let inputs = element.children.iter().filter(|_| element.tag != "nodegraph");
-            let ends = inputs.chain([element]);
+        let connected = |At { node, scope }: At<'a>| {
+            let inputs = node.children.iter().filter(|_| node.tag != "nodegraph");
             // What is not defined is an error where it is used.
-            ends.filter_map(|end| self.target(end, scope).ok().flatten()).collect()
+            let target = |end| self.target(end, scope).ok().flatten();
+            inputs.chain([node]).filter_map(target).collect()
         };
-        let Some(circle) = cycle::find(all, connected) else { return };
-        let nodes: Vec<&Element> = circle.iter().map(|at| at.node()).collect();
+        let Some(circle) = circle(all, connected) else { return };
+        let nodes: Vec<&Element> = circle.iter().map(|at| at.node).collect();
         let names: Vec<&str> = nodes.iter().chain(&nodes[..1]).map(|node| named(node)).collect();
         let message = format!(
             "nodes are connected in a circle: {}; remove one of the connections",

@@ -2,12 +2,12 @@
 
 use std::collections::HashSet;
 
-use microfacet_baker::scene::SceneError;
-
 use super::Reader;
 use super::connect::is_end;
 use super::graph::RGB;
 use super::index::{At, Scope};
+use crate::Result;
+use crate::builder::has_word;
 use crate::xml::Element;
 
 /// Constants are followed through this many nodes at most.
@@ -21,8 +21,8 @@ impl<'a> Reader<'a> {
         at: At<'a>,
         name: &'static str,
         default: [f64; 3],
-    ) -> Result<Option<[f64; 3]>, SceneError> {
-        let Some(input) = self.index.given(at.node(), name) else { return Ok(Some(default)) };
+    ) -> Result<Option<[f64; 3]>> {
+        let Some(input) = self.index.given(at.node, name) else { return Ok(Some(default)) };
         if !self.is_constant(input, at.scope)? {
             return Ok(None);
         }
@@ -38,7 +38,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Whether a value comes from numbers through arithmetic alone.
-    fn is_constant(&mut self, input: &'a Element, scope: Scope<'a>) -> Result<bool, SceneError> {
+    fn is_constant(&mut self, input: &'a Element, scope: Scope<'a>) -> Result<bool> {
         let mut left = vec![At::new(input, scope)];
         let mut seen = HashSet::new();
         while let Some(at) = left.pop() {
@@ -48,14 +48,14 @@ impl<'a> Reader<'a> {
             if seen.len() > MAX_CONSTANT {
                 return Ok(false);
             }
-            let end = at.node();
+            let end = at.node;
             let Some(next) = self.target(end, at.scope)? else { continue };
-            if is_end(end, next.node()) {
+            if is_end(end, next.node) {
                 left.push(next);
                 continue;
             }
-            let node = next.node();
-            if ARITHMETIC.contains(&&node.tag[..]) && node.children.len() <= MAX_CONSTANT {
+            let node = next.node;
+            if has_word(ARITHMETIC, &node.tag) && node.children.len() <= MAX_CONSTANT {
                 left.extend(node.children.iter().map(|input| At::new(input, next.scope)));
             } else {
                 match self.implemented(next, end.attribute("output"))? {
@@ -69,35 +69,7 @@ impl<'a> Reader<'a> {
 }
 
 /// Nodes whose output is a number if their inputs are.
-const ARITHMETIC: [&str; 30] = [
-    "absval",
-    "add",
-    "artistic_ior",
-    "clamp",
-    "combine2",
-    "combine3",
-    "combine4",
-    "constant",
-    "convert",
-    "divide",
-    "dot",
-    "extract",
-    "glossiness_anisotropy",
-    "invert",
-    "luminance",
-    "max",
-    "min",
-    "mix",
-    "multiply",
-    "power",
-    "range",
-    "remap",
-    "roughness_anisotropy",
-    "roughness_dual",
-    "safepower",
-    "separate2",
-    "separate3",
-    "separate4",
-    "sqrt",
-    "subtract",
-];
+const ARITHMETIC: &str = "absval add artistic_ior clamp combine2 combine3 combine4 constant convert \
+                          divide dot extract glossiness_anisotropy invert luminance max min mix \
+                          multiply power range remap roughness_anisotropy roughness_dual \
+                          safepower separate2 separate3 separate4 sqrt subtract";

@@ -1,12 +1,12 @@
 //! Ranges of the values that MaterialX node graphs compute.
 
-use microfacet_baker::scene::SceneError;
 use microfacet_tables::Interval;
 
 use super::Reader;
 use super::connect::{channel_named, is_end, named, place, selected};
 use super::index::{At, Scope};
 use super::inputs::artistic;
+use crate::Result;
 use crate::texture::Channel;
 use crate::xml::Element;
 
@@ -19,7 +19,7 @@ impl<'a> Reader<'a> {
         input: &'a Element,
         scope: Scope<'a>,
         channel: Channel,
-    ) -> Result<Interval, SceneError> {
+    ) -> Result<Interval> {
         let range = self.connected(input, scope, channel);
         if range.is_err() {
             self.ranges.abandon();
@@ -33,29 +33,22 @@ impl<'a> Reader<'a> {
         input: &'a Element,
         scope: Scope<'a>,
         channel: Channel,
-    ) -> Result<Interval, SceneError> {
+    ) -> Result<Interval> {
         let key = (At::new(input, scope), channel);
         if let Some(known) = self.ranges.begin(key, &input.place)? {
             return Ok(known);
         }
         let channel = selected(input, channel);
         let range = match self.target(input, scope)? {
-            Some(end) if is_end(input, end.node()) => {
-                self.connected(end.node(), end.scope, channel)?
-            }
+            Some(end) if is_end(input, end.node) => self.connected(end.node, end.scope, channel)?,
             Some(at) => self.node(at, input.attribute("output"), channel)?,
             None => Interval::point(number(input, channel)?),
         };
         self.ranges.end(key, range, &input.place)
     }
 
-    fn node(
-        &mut self,
-        at: At<'a>,
-        output: Option<&'a str>,
-        channel: Channel,
-    ) -> Result<Interval, SceneError> {
-        let (node, scope) = (at.node(), at.scope);
+    fn node(&mut self, at: At<'a>, output: Option<&'a str>, channel: Channel) -> Result<Interval> {
+        let (node, scope) = (at.node, at.scope);
         let mut of = |name: &'static str, default: f64, channel| match self.index.given(node, name)
         {
             Some(input) => self.connected(input, scope, channel),
@@ -192,7 +185,7 @@ impl<'a> Reader<'a> {
                 sum(self.image(at, channel).map_bilinear(scale, |x, scale| x * scale), bias)
             }
             tag => match self.implemented(at, output)? {
-                Some(end) => self.connected(end.node(), end.scope, channel)?,
+                Some(end) => self.connected(end.node, end.scope, channel)?,
                 None => {
                     let reason = format!("is a node {tag}, whose range is not known");
                     self.unknown(node, &reason)
@@ -223,7 +216,7 @@ pub(super) fn negated(a: Interval) -> Interval {
 }
 
 /// The number in the attribute "value"; for a colour or a vector, that of the channel.
-fn number(input: &Element, channel: Channel) -> Result<f64, SceneError> {
+fn number(input: &Element, channel: Channel) -> Result<f64> {
     let name = input.attribute("name").unwrap_or("value");
     let Some(text) = input.attribute("value") else {
         return Err(input.place.invalid(format!("{name} has neither a value nor a connection")));

@@ -8,21 +8,20 @@ use microfacet_tables::Interval;
 use super::Reader;
 use super::connect::named;
 use super::index::At;
-use crate::limits;
 use crate::texture::{Channel, Encoding};
 use crate::xml::Element;
 
 impl<'a> Reader<'a> {
     /// The range of a channel of the image of an image node.
     pub(super) fn image(&mut self, at: At<'a>, channel: Channel) -> Interval {
-        let node = at.node();
+        let node = at.node;
         let file = self.index.given(node, "file").and_then(|file| self.text(file, at));
         let Some((input, file)) = file.filter(|(_, file)| !file.is_empty()) else {
             return self.builder.unread(named(node), "names no file", &node.place);
         };
         let of_type = node.attribute("type").unwrap_or_default();
         let is_colour = of_type.starts_with("color") || of_type == "multioutput";
-        let holders = [input, node, at.scope.graph.0];
+        let holders = [input, node, at.scope.graph];
         let encoding = match self.index.inherited(&holders, "colorspace") {
             Some("srgb_texture") if is_colour => Encoding::Srgb,
             _ => Encoding::Linear,
@@ -48,8 +47,8 @@ impl<'a> Reader<'a> {
         let mut end = At::new(input, at.scope);
         // A file name comes through the interfaces of graphs inside each other.
         for _ in 0..8 {
-            match self.target(end.node(), end.scope).ok()? {
-                None => return Some((end.node(), end.node().attribute("value")?)),
+            match self.target(end.node, end.scope).ok()? {
+                None => return Some((end.node, end.node.attribute("value")?)),
                 Some(next) => end = next,
             }
         }
@@ -78,19 +77,11 @@ fn tiles(path: &Path) -> Option<Result<Vec<PathBuf>, &'static str>> {
     let Ok(entries) = std::fs::read_dir(folder.unwrap_or(Path::new("."))) else {
         return Some(Err("is in a folder that cannot be read"));
     };
-    let mut found = BTreeSet::new();
-    for (count, entry) in entries.enumerate() {
-        if count == limits::TILE_FOLDER || found.len() == limits::TILES {
-            return Some(Err("is in a folder of too many files"));
-        }
-        let Ok(entry) = entry else { continue };
-        let is_one = entry.file_name().to_str().is_some_and(|name| {
-            let tile = name.strip_prefix(before).and_then(|rest| rest.strip_suffix(after));
-            tile.is_some_and(is_tile)
-        });
-        if is_one {
-            found.insert(path.with_file_name(entry.file_name()));
-        }
-    }
+    let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let tiles = names.filter(|name| {
+        let tile = name.strip_prefix(before).and_then(|rest| rest.strip_suffix(after));
+        tile.is_some_and(is_tile)
+    });
+    let found: BTreeSet<PathBuf> = tiles.map(|name| path.with_file_name(name)).collect();
     Some(if found.is_empty() { Err("has no tile") } else { Ok(found.into_iter().collect()) })
 }

@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::xml::{Element, Key};
+use crate::xml::Element;
 
 /// The root attributes of a document that hold for all it brings, by its file.
 pub(super) type Headers = HashMap<Arc<Path>, Vec<(String, String)>>;
@@ -12,24 +12,20 @@ pub(super) type Headers = HashMap<Arc<Path>, Vec<(String, String)>>;
 /// A node with the scope in which the names of its connections are looked up.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct At<'a> {
-    pub(super) key: Key<'a>,
+    pub(super) node: &'a Element,
     pub(super) scope: Scope<'a>,
 }
 
 impl<'a> At<'a> {
     pub(super) fn new(node: &'a Element, scope: Scope<'a>) -> Self {
-        Self { key: node.key(), scope }
-    }
-
-    pub(super) fn node(self) -> &'a Element {
-        self.key.0
+        Self { node, scope }
     }
 }
 
 /// A graph, or the document, and the use of the graph that is meant.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct Scope<'a> {
-    pub(super) graph: Key<'a>,
+    pub(super) graph: &'a Element,
     /// Number of the instance that the graph implements, from 1; 0 if it implements none.
     pub(super) instance: usize,
 }
@@ -37,7 +33,7 @@ pub(super) struct Scope<'a> {
 impl<'a> Scope<'a> {
     /// A graph that is used as it is, or the document.
     pub(super) fn of(graph: &'a Element) -> Self {
-        Self { graph: graph.key(), instance: 0 }
+        Self { graph, instance: 0 }
     }
 }
 
@@ -45,9 +41,9 @@ impl<'a> Scope<'a> {
 pub(super) struct Index<'a> {
     root: &'a Element,
     headers: &'a Headers,
-    children: HashMap<(Key<'a>, &'a str), &'a Element>,
+    children: HashMap<(&'a Element, &'a str), &'a Element>,
     /// As `children`, of the outputs alone; the first of all is also under the empty name.
-    outputs: HashMap<(Key<'a>, &'a str), &'a Element>,
+    outputs: HashMap<(&'a Element, &'a str), &'a Element>,
     /// The first `nodedef` of a node and of the type of an output; for any type, "".
     definitions: HashMap<(&'a str, &'a str), &'a Element>,
     /// The graphs that implement definitions, by the name of the `nodedef`.
@@ -67,14 +63,14 @@ impl<'a> Index<'a> {
         root.walk(&mut |element| {
             for child in &element.children {
                 if let Some(name) = child.attribute("name") {
-                    let key = (element.key(), name);
+                    let key = (element, name);
                     index.children.entry(key).or_insert(child);
                     if child.tag == "output" {
                         index.outputs.entry(key).or_insert(child);
                     }
                 }
                 if child.tag == "output" {
-                    index.outputs.entry((element.key(), "")).or_insert(child);
+                    index.outputs.entry((element, "")).or_insert(child);
                 }
             }
         });
@@ -108,7 +104,7 @@ impl<'a> Index<'a> {
     }
 
     pub(super) fn child(&self, element: &'a Element, name: &'a str) -> Option<&'a Element> {
-        self.children.get(&(element.key(), name)).copied()
+        self.children.get(&(element, name)).copied()
     }
 
     /// The child `name`, if it has a value or a connection; else the default of its node holds.
@@ -120,7 +116,7 @@ impl<'a> Index<'a> {
 
     /// The output of a graph; the first if the name is empty.
     pub(super) fn output(&self, graph: &'a Element, name: &'a str) -> Option<&'a Element> {
-        self.outputs.get(&(graph.key(), name)).copied()
+        self.outputs.get(&(graph, name)).copied()
     }
 
     /// The `nodedef` of that name, if the document has it.
@@ -138,8 +134,8 @@ impl<'a> Index<'a> {
     }
 
     /// The graphs that implement some `nodedef`.
-    pub(super) fn implementing(&self) -> HashSet<Key<'a>> {
-        self.implementations.values().map(|graph| graph.key()).collect()
+    pub(super) fn implementing(&self) -> HashSet<&'a Element> {
+        self.implementations.values().copied().collect()
     }
 
     /// The graph that implements a `nodedef`.
@@ -151,7 +147,7 @@ impl<'a> Index<'a> {
     /// `elements` that has it, or else that of the root of its document.
     pub(super) fn inherited(&self, elements: &[&'a Element], name: &str) -> Option<&'a str> {
         // The root is that of the document which includes the others.
-        let mut inside = elements.iter().filter(|element| !std::ptr::eq(**element, self.root));
+        let mut inside = elements.iter().filter(|&&element| element != self.root);
         let own = inside.find_map(|element| element.attribute(name));
         own.or_else(|| {
             let header = self.headers.get(&elements.first()?.place.file)?;

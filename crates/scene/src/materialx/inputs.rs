@@ -1,15 +1,13 @@
 //! Values of the inputs of shading models and BSDFs, and the Fresnel terms that they state.
 
-use microfacet_baker::scene::{Reflectance, SceneError};
+use microfacet_baker::scene::Reflectance;
 use microfacet_tables::Interval;
 
 use super::Reader;
 use super::index::At;
-use crate::builder::{conductor, dielectric};
+use crate::Result;
+use crate::fresnel::{conductor, dielectric};
 use crate::texture::Channel;
-
-/// What is done about a Fresnel term that is impossible.
-pub(super) const NO_FRESNEL: (Option<Reflectance>, &str) = (None, "the lobe has no Fresnel term");
 
 /// The share of metal in a material.
 pub(super) enum Metal {
@@ -25,7 +23,7 @@ impl<'a> Reader<'a> {
         at: At<'a>,
         name: &'static str,
         default: f64,
-    ) -> Result<Interval, SceneError> {
+    ) -> Result<Interval> {
         let value = self.input(at, name, default)?;
         Ok(self.moved(at, name, value))
     }
@@ -35,7 +33,7 @@ impl<'a> Reader<'a> {
         if value.min < 0.0 || value.max > 1.0 {
             let worst = if value.min < 0.0 { value.min } else { value.max };
             self.builder.warn(
-                &at.node().place,
+                &at.node.place,
                 format!("{name} is {worst}, outside [0, 1]; it is moved to the nearer end"),
             );
         }
@@ -47,7 +45,7 @@ impl<'a> Reader<'a> {
         at: At<'a>,
         name: &'static str,
         default: f64,
-    ) -> Result<(Interval, Metal), SceneError> {
+    ) -> Result<(Interval, Metal)> {
         let metal = self.unit(at, name, default)?;
         let kind = match metal {
             Interval { max: 0.0, .. } => Metal::None,
@@ -63,12 +61,12 @@ impl<'a> Reader<'a> {
         at: At<'a>,
         name: &'static str,
         default: f64,
-    ) -> Result<Option<Reflectance>, SceneError> {
+    ) -> Result<Option<Reflectance>> {
         let fresnel = match self.constant(at, name, [default; 3]) {
-            Ok(eta) => eta.map(|eta| dielectric(eta[0], &at.node().place)).transpose(),
+            Ok(eta) => eta.map(|eta| dielectric(eta[0], &at.node.place)).transpose(),
             Err(error) => Err(error),
         };
-        self.builder.or_warn(fresnel, NO_FRESNEL)
+        self.builder.without_fresnel(fresnel, None)
     }
 
     /// The Fresnel term of a dielectric whose reflectance at normal incidence is multiplied by a
@@ -79,7 +77,7 @@ impl<'a> Reader<'a> {
         name: &'static str,
         default: f64,
         weight: Interval,
-    ) -> Result<Option<Reflectance>, SceneError> {
+    ) -> Result<Option<Reflectance>> {
         let fresnel = self.dielectric(at, name, default)?;
         let Some(Reflectance::Dielectric(Interval { min: eta, .. })) =
             fresnel.filter(|_| weight.is_point())
@@ -102,9 +100,9 @@ impl<'a> Reader<'a> {
         at: At<'a>,
         name: &'static str,
         default: [f64; 3],
-    ) -> Result<Option<[f64; 3]>, SceneError> {
+    ) -> Result<Option<[f64; 3]>> {
         let colour = self.constant(at, name, default);
-        self.builder.or_warn(colour, (None, NO_FRESNEL.1))
+        self.builder.without_fresnel(colour, None)
     }
 
     /// A constant colour times a constant number.
@@ -115,14 +113,14 @@ impl<'a> Reader<'a> {
         grey: f64,
         factor: &'static str,
         default: f64,
-    ) -> Result<Option<[f64; 3]>, SceneError> {
+    ) -> Result<Option<[f64; 3]>> {
         let colour = self.colour(at, colour, [grey; 3])?;
         let factor = self.colour(at, factor, [default; 3])?;
         Ok(colour.zip(factor).map(|(colour, factor)| colour.map(|x| x * factor[0])))
     }
 
     /// The reflectance at normal incidence, ((1 − n) / (1 + n))², of a constant index `ior`.
-    pub(super) fn normal_reflectance(&mut self, at: At<'a>) -> Result<Option<f64>, SceneError> {
+    pub(super) fn normal_reflectance(&mut self, at: At<'a>) -> Result<Option<f64>> {
         let Some(Reflectance::Dielectric(Interval { min: eta, .. })) =
             self.dielectric(at, "ior", 1.5)?
         else {
@@ -138,39 +136,34 @@ impl<'a> Reader<'a> {
         at: At<'a>,
         reflectivity: Option<[f64; 3]>,
         edge: Option<[f64; 3]>,
-    ) -> Result<Option<Reflectance>, SceneError> {
+    ) -> Result<Option<Reflectance>> {
         let Some((r, edge)) = reflectivity.zip(edge) else { return Ok(None) };
         let [red, green, blue] = [0, 1, 2].map(|i| artistic(r[i], edge[i]));
         let fresnel =
-            conductor([red[0], green[0], blue[0]], [red[1], green[1], blue[1]], &at.node().place);
-        self.builder.or_warn(fresnel.map(Some), NO_FRESNEL)
+            conductor([red[0], green[0], blue[0]], [red[1], green[1], blue[1]], &at.node.place);
+        self.builder.without_fresnel(fresnel.map(Some), None)
     }
 
     /// Whether a thin film is on the lobe, which has no Fresnel term then, nor where that cannot be
     /// known.
-    pub(super) fn film(&mut self, at: At<'a>, amount: &'static str) -> Result<bool, SceneError> {
+    pub(super) fn film(&mut self, at: At<'a>, amount: &'static str) -> Result<bool> {
         let film = self.greatest(at, amount, 0.0).map(|amount| amount > 0.0);
-        self.builder.or_warn(film, (true, NO_FRESNEL.1))
+        self.builder.without_fresnel(film, true)
     }
 
     /// Warns of a weight that is not read, unless it is 0.
-    pub(super) fn without(&mut self, at: At<'a>, name: &'static str) -> Result<(), SceneError> {
+    pub(super) fn without(&mut self, at: At<'a>, name: &'static str) -> Result<()> {
         let weight = self.greatest(at, name, 0.0);
         if self.builder.or_warn(weight, (0.0, "it is not read"))? > 0.0 {
             self.builder
-                .warn(&at.node().place, format!("{name} is not read; the lobe is without it"));
+                .warn(&at.node.place, format!("{name} is not read; the lobe is without it"));
         }
         Ok(())
     }
 
     /// The greatest value of an input, of any channel.
-    pub(super) fn greatest(
-        &mut self,
-        at: At<'a>,
-        name: &'static str,
-        default: f64,
-    ) -> Result<f64, SceneError> {
-        let Some(input) = self.index.given(at.node(), name) else { return Ok(default) };
+    pub(super) fn greatest(&mut self, at: At<'a>, name: &'static str, default: f64) -> Result<f64> {
+        let Some(input) = self.index.given(at.node, name) else { return Ok(default) };
         let mut greatest = f64::NEG_INFINITY;
         for channel in [Channel::Red, Channel::Green, Channel::Blue] {
             greatest = greatest.max(self.value(input, at.scope, channel)?.max);
@@ -183,8 +176,8 @@ impl<'a> Reader<'a> {
         at: At<'a>,
         name: &'static str,
         default: f64,
-    ) -> Result<Interval, SceneError> {
-        match self.index.given(at.node(), name) {
+    ) -> Result<Interval> {
+        match self.index.given(at.node, name) {
             Some(input) => self.value(input, at.scope, Channel::Red),
             None => Ok(Interval::point(default)),
         }

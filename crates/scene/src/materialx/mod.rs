@@ -66,32 +66,25 @@ mod shaders;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
-use microfacet_baker::scene::{Format, Scene, SceneError};
+use microfacet_baker::scene::{Format, Scene};
 
-use super::builder::Builder;
-use super::memo::Memo;
-use super::texture::Channel;
-use super::xml::{self, Element};
-use crate::limits;
-use crate::limits::Budget;
-use connect::{Instance, named};
+use crate::Result;
+use crate::builder::Builder;
+use crate::limits::{self, Budget};
+use crate::references::Memo;
+use crate::texture::Channel;
+use crate::xml::{self, Element};
+use connect::{Instance, Source, named};
 use index::{At, Headers, Index, Scope};
 
 /// Reads a MaterialX document.
-pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
+pub(super) fn load(path: &Path) -> Result<Scene> {
     let mut xml = xml::Reader::new();
-    let mut root = xml.open(path)?;
-    if root.tag != "materialx" {
-        return Err(root.place.foreign(format!(
-            "<{}> is not the root of a MaterialX document; expected <materialx>",
-            root.tag
-        )));
-    }
+    let mut root = xml.open(path, &["materialx"], "a MaterialX document")?;
     let mut builder = Builder::new(Format::MaterialX);
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut headers = Headers::new();
     expand(&mut root, folder, &mut xml, &mut headers, &mut builder)?;
-    let included = xml.includes.found();
     let mut reader = Reader {
         root: &root,
         builder,
@@ -100,12 +93,12 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
         instances: Vec::new(),
         entered: HashMap::new(),
         circle: HashSet::new(),
-        bsdfs: Budget::new(limits::BSDFS),
+        left: Budget::new(limits::NODES),
     };
     reader.check_inputs();
     reader.check_circles();
     reader.materials()?;
-    Ok(reader.builder.finish(included))
+    Ok(reader.builder.finish(xml.includes.found()))
 }
 
 /// Replaces each `<xi:include>` by the content of its document, and keeps the attributes of every
@@ -116,7 +109,7 @@ fn expand(
     xml: &mut xml::Reader,
     headers: &mut Headers,
     builder: &mut Builder,
-) -> Result<(), SceneError> {
+) -> Result<()> {
     headers.insert(root.place.file.clone(), root.attributes.clone());
     for child in std::mem::take(&mut root.children) {
         if child.tag != "include" {
@@ -149,24 +142,22 @@ struct Reader<'a> {
     entered: HashMap<At<'a>, Scope<'a>>,
     /// Nodes that are connected in a circle.
     circle: HashSet<At<'a>>,
-    bsdfs: Budget,
+    /// Nodes that may still be followed.
+    left: Budget,
 }
-
-/// A shader, as an output of a node.
-type Shader<'a> = (At<'a>, Option<&'a str>);
 
 /// Shaders in the order of the document, with the materials that use each.
 #[derive(Default)]
 struct Shaders<'a> {
-    list: Vec<(Shader<'a>, Vec<&'a str>)>,
-    places: HashMap<Shader<'a>, usize>,
+    list: Vec<(Source<'a>, Vec<&'a str>)>,
+    places: HashMap<Source<'a>, usize>,
 }
 
 impl<'a> Shaders<'a> {
     /// The materials that use a shader.
-    fn of(&mut self, (at, output): Shader<'a>) -> &mut Vec<&'a str> {
+    fn of(&mut self, (at, output): Source<'a>) -> &mut Vec<&'a str> {
         // A node of several outputs is several shaders.
-        let is_one = at.node().attribute("type") == Some("surfaceshader");
+        let is_one = at.node.attribute("type") == Some("surfaceshader");
         let shader = (at, output.filter(|_| !is_one));
         let place = *self.places.entry(shader).or_insert_with(|| {
             self.list.push((shader, Vec::new()));
@@ -177,18 +168,14 @@ impl<'a> Shaders<'a> {
 }
 
 impl<'a> Reader<'a> {
-    fn materials(&mut self) -> Result<(), SceneError> {
+    fn materials(&mut self) -> Result<()> {
         let root = self.root;
-        let mut assigned = HashSet::new();
-        root.walk(&mut |element| {
-            if element.tag == "materialassign" {
-                assigned.extend(element.attribute("material"));
-            }
-        });
+        let assigned = root.all("materialassign").into_iter();
+        let assigned: HashSet<&str> = assigned.filter_map(|e| e.attribute("material")).collect();
         // A graph with a definition implements a shading model and does not use it.
         let implementing = self.index.implementing();
         let is_graph = |e: &&Element| {
-            let defines = e.attribute("nodedef").is_some() || implementing.contains(&e.key());
+            let defines = e.attribute("nodedef").is_some() || implementing.contains(e);
             e.tag == "nodegraph" && !defines
         };
         let graphs = root.children.iter().filter(is_graph);
@@ -198,7 +185,7 @@ impl<'a> Reader<'a> {
             .flat_map(|graph| graph.children.iter().map(|e| At::new(e, Scope::of(graph))))
             .collect();
         let mut shaders = Shaders::default();
-        for &at in nodes.iter().filter(|at| is_shader(at.node())) {
+        for &at in nodes.iter().filter(|at| is_shader(at.node)) {
             shaders.of((at, None));
         }
         let parts = self.parts_of_shaders(&nodes);
@@ -206,21 +193,21 @@ impl<'a> Reader<'a> {
             self.material(at, &mut shaders)?;
         }
         for ((at, output), materials) in shaders.list {
-            let own = named(at.node());
+            let own = named(at.node);
             let is_part = parts.contains(&at);
             let own = [own].into_iter().filter(|_| materials.is_empty() && !is_part);
             for name in own.chain(materials.iter().copied()) {
                 let used = assigned.is_empty() || assigned.contains(name);
                 let read = self.surface(name, used, at, output);
-                self.builder.degrade(name, &at.node().tag, &at.node().place, read)?;
+                self.builder.degrade(name, &at.node.tag, &at.node.place, read)?;
             }
         }
         Ok(())
     }
 
     /// Notes the shaders of a material, if the node is one.
-    fn material(&mut self, at: At<'a>, shaders: &mut Shaders<'a>) -> Result<(), SceneError> {
-        let node = at.node();
+    fn material(&mut self, at: At<'a>, shaders: &mut Shaders<'a>) -> Result<()> {
+        let node = at.node;
         let name = named(node);
         let refers = |tag: &str| tag == "shaderref" || tag == "shader_ref";
         if refers(&node.tag) || node.children.iter().any(|child| refers(&child.tag)) {
@@ -258,8 +245,8 @@ impl<'a> Reader<'a> {
 
     /// The shaders that other shaders are made of, which are no materials by themselves.
     fn parts_of_shaders(&self, nodes: &[At<'a>]) -> HashSet<At<'a>> {
-        let shaders = nodes.iter().filter(|at| is_shader(at.node()));
-        let inputs = shaders.flat_map(|at| at.node().children.iter().map(|e| (e, at.scope)));
+        let shaders = nodes.iter().filter(|at| is_shader(at.node));
+        let inputs = shaders.flat_map(|at| at.node.children.iter().map(|e| (e, at.scope)));
         let of_shaders =
             inputs.filter(|(input, _)| input.attribute("type") == Some("surfaceshader"));
         // What is not defined is an error where it is used.

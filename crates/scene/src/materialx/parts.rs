@@ -8,7 +8,7 @@ use super::Reader;
 use super::bsdfs::DIFFUSE;
 use super::connect::is_end;
 use super::index::At;
-use crate::limits;
+use crate::Result;
 use crate::xml::Element;
 
 /// A node to follow, with the output that is meant, and whether a thin film lies on it.
@@ -31,24 +31,15 @@ pub(super) struct Parts<'a> {
 impl<'a> Reader<'a> {
     /// Follows the nodes that combine BSDFs and surfaces. Each is visited once, without recursion,
     /// so that graphs may be deep and share their parts.
-    pub(super) fn parts(
-        &mut self,
-        start: At<'a>,
-        output: Option<&'a str>,
-    ) -> Result<Parts<'a>, SceneError> {
+    pub(super) fn parts(&mut self, start: At<'a>, output: Option<&'a str>) -> Result<Parts<'a>> {
         let mut parts = Parts { left: vec![(start, output, false)], ..Parts::default() };
         let mut seen = HashSet::new();
         while let Some((at, output, film)) = parts.left.pop() {
             if !seen.insert((at, output)) {
                 continue;
             }
-            let node = at.node();
-            if !self.bsdfs.take(1) {
-                return Err(node.place.too_large(format!(
-                    "the materials have more than {} BSDF nodes in all; split the document",
-                    limits::BSDFS
-                )));
-            }
+            let node = at.node;
+            self.count(node)?;
             if let Err(error) = self.part((at, output, film), &mut parts) {
                 parts.broken.push((node, error));
             }
@@ -57,12 +48,8 @@ impl<'a> Reader<'a> {
     }
 
     /// Notes what a node is, and what is to be followed from there.
-    fn part(
-        &mut self,
-        (at, output, film): Step<'a>,
-        parts: &mut Parts<'a>,
-    ) -> Result<(), SceneError> {
-        let node = at.node();
+    fn part(&mut self, (at, output, film): Step<'a>, parts: &mut Parts<'a>) -> Result<()> {
+        let node = at.node;
         if self.circle.contains(&at) {
             return Err(node.place.invalid("is connected to itself through other nodes"));
         }
@@ -94,7 +81,7 @@ impl<'a> Reader<'a> {
                 let top = self.index.given(node, "top");
                 // What is wrong with it is said where it is followed.
                 let top = top.and_then(|top| self.resolve(top, at.scope).ok().flatten());
-                let is_film = top.is_some_and(|(top, _)| top.node().tag == "thin_film_bsdf");
+                let is_film = top.is_some_and(|(top, _)| top.node.tag == "thin_film_bsdf");
                 self.follow(at, "base", film || is_film, parts);
                 self.follow(at, "top", film, parts);
             }
@@ -127,19 +114,19 @@ impl<'a> Reader<'a> {
     /// Notes what an input of a node is connected to; if that is undefined, the other inputs are
     /// still followed.
     fn follow(&self, at: At<'a>, name: &'static str, film: bool, parts: &mut Parts<'a>) {
-        let Some(input) = self.index.given(at.node(), name) else { return };
+        let Some(input) = self.index.given(at.node, name) else { return };
         match self.source(At::new(input, at.scope)) {
             Ok(next) => parts.left.extend(next.map(|(at, output)| (at, output, film))),
-            Err(error) => parts.broken.push((at.node(), error)),
+            Err(error) => parts.broken.push((at.node, error)),
         }
     }
 
     /// What an input or output is connected to, with the output that is meant.
-    fn source(&self, end: At<'a>) -> Result<Option<(At<'a>, Option<&'a str>)>, SceneError> {
-        let next = self.target(end.node(), end.scope)?;
+    fn source(&self, end: At<'a>) -> Result<Option<(At<'a>, Option<&'a str>)>> {
+        let next = self.target(end.node, end.scope)?;
         Ok(next.map(|next| {
-            let is_end = is_end(end.node(), next.node());
-            (next, end.node().attribute("output").filter(|_| !is_end))
+            let is_end = is_end(end.node, next.node);
+            (next, end.node.attribute("output").filter(|_| !is_end))
         }))
     }
 }

@@ -6,7 +6,8 @@ use microfacet_tables::Interval;
 use super::Reader;
 use super::index::At;
 use super::inputs::Metal;
-use crate::builder::{GGX, Lobe};
+use crate::Result;
+use crate::builder::Lobe;
 
 /// The lower limit of α: `M_FLOAT_EPS` of the shaders (`stdlib/genglsl/lib/mx_math.glsl`).
 pub(super) const LEAST_ALPHA: f64 = 1e-8;
@@ -28,17 +29,17 @@ impl Model {
     fn push(
         &mut self,
         name: Option<&'static str>,
-        roughness: Result<Roughness, SceneError>,
+        roughness: Result<Roughness>,
         fresnel: Option<Reflectance>,
     ) {
         match roughness {
-            Ok(roughness) => self.lobes.push(lobe(name, roughness, fresnel)),
+            Ok(roughness) => self.lobes.push(Lobe::ggx(name, roughness, fresnel)),
             Err(error) => self.failed.push((name, error)),
         }
     }
 
     /// Whether there is a further lobe of this weight; one that is impossible costs it alone.
-    fn has(&mut self, name: &'static str, weight: Result<Interval, SceneError>) -> bool {
+    fn has(&mut self, name: &'static str, weight: Result<Interval>) -> bool {
         match weight {
             Ok(weight) => weight.max > 0.0,
             Err(error) => {
@@ -51,8 +52,8 @@ impl Model {
 
 impl<'a> Reader<'a> {
     /// The lobes of a shading model of the libraries; `None` for other nodes.
-    pub(super) fn model(&mut self, at: At<'a>) -> Result<Option<Model>, SceneError> {
-        let (mut model, fabric) = match &at.node().tag[..] {
+    pub(super) fn model(&mut self, at: At<'a>) -> Result<Option<Model>> {
+        let (mut model, fabric) = match &at.node.tag[..] {
             "standard_surface" => (self.standard_surface(at)?, "sheen"),
             "open_pbr_surface" => (self.open_pbr_surface(at)?, "fuzz_weight"),
             "gltf_pbr" => (self.gltf_pbr(at)?, "sheen_color"),
@@ -73,11 +74,11 @@ impl<'a> Reader<'a> {
         at: At<'a>,
         (roughness, default): (&'static str, f64),
         anisotropy: &'static str,
-    ) -> Result<(Interval, Interval), SceneError> {
+    ) -> Result<(Interval, Interval)> {
         Ok((self.unit(at, roughness, default)?, self.unit(at, anisotropy, 0.0)?))
     }
 
-    fn standard_surface(&mut self, at: At<'a>) -> Result<Model, SceneError> {
+    fn standard_surface(&mut self, at: At<'a>) -> Result<Model> {
         let base = self.pair(at, ("specular_roughness", 0.2), "specular_anisotropy");
         let (metalness, metal) = self.metal(at, "metalness", 0.0)?;
         let transmission = self.unit(at, "transmission", 0.0)?;
@@ -122,7 +123,7 @@ impl<'a> Reader<'a> {
         Ok(model)
     }
 
-    fn open_pbr_surface(&mut self, at: At<'a>) -> Result<Model, SceneError> {
+    fn open_pbr_surface(&mut self, at: At<'a>) -> Result<Model> {
         let alpha = |roughness: Interval, anisotropy: Interval| {
             let stretch = |a: f64| (2.0 / (1.0 + (1.0 - a) * (1.0 - a))).sqrt();
             let along = anisotropy.map_rising(stretch);
@@ -177,7 +178,7 @@ impl<'a> Reader<'a> {
         Ok(model)
     }
 
-    fn gltf_pbr(&mut self, at: At<'a>) -> Result<Model, SceneError> {
+    fn gltf_pbr(&mut self, at: At<'a>) -> Result<Model> {
         let base = self.pair(at, ("roughness", 1.0), "anisotropy_strength");
         let (metallic, metal) = self.metal(at, "metallic", 1.0)?;
         let transmission = self.unit(at, "transmission", 0.0)?;
@@ -219,7 +220,7 @@ impl<'a> Reader<'a> {
         Ok(model)
     }
 
-    fn usd_preview_surface(&mut self, at: At<'a>) -> Result<Model, SceneError> {
+    fn usd_preview_surface(&mut self, at: At<'a>) -> Result<Model> {
         let roughness = self.unit(at, "roughness", 0.5).map(squared);
         let (_, metal) = self.metal(at, "metallic", 0.0)?;
         let fresnel = if self.greatest(at, "useSpecularWorkflow", 0.0)? > 0.0 {
@@ -244,7 +245,7 @@ impl<'a> Reader<'a> {
         Ok(model)
     }
 
-    fn disney_principled(&mut self, at: At<'a>) -> Result<Model, SceneError> {
+    fn disney_principled(&mut self, at: At<'a>) -> Result<Model> {
         let base = self.pair(at, ("roughness", 0.5), "anisotropic");
         let (metallic, metal) = self.metal(at, "metallic", 0.0)?;
         let specular = self.unit(at, "specular", 0.5)?;
@@ -270,14 +271,6 @@ impl<'a> Reader<'a> {
 /// The Fresnel term of Schlick's approximation, for reflectances from 0 to 1.
 pub(super) fn schlick(f0: [f64; 3]) -> Option<Reflectance> {
     f0.iter().all(|f0| (0.0..=1.0).contains(f0)).then_some(Reflectance::Schlick(f0))
-}
-
-pub(super) fn lobe(
-    name: Option<&'static str>,
-    roughness: Roughness,
-    fresnel: Option<Reflectance>,
-) -> Lobe {
-    Lobe { name, roughness, gamma: GGX, fresnel, masking: None }
 }
 
 /// α of `roughness_anisotropy`: r² / A and r² A, with A = √(1 − min(a, 0.98)).

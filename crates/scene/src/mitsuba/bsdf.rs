@@ -1,11 +1,12 @@
 //! The lobes of Mitsuba's BSDF plugins.
 
-use microfacet_baker::scene::{Masking, Roughness, SceneError, did_you_mean};
+use microfacet_baker::scene::{Roughness, did_you_mean};
 use microfacet_tables::Interval;
 
 use super::Reader;
 use super::fresnel::constant_dielectric;
 use super::value::named;
+use crate::Result;
 use crate::builder::{BECKMANN, GGX, Lobe, Row};
 use crate::xml::Element;
 
@@ -57,12 +58,7 @@ const CLEARCOAT: &str = "principled clearcoat";
 
 impl<'a> Reader<'a> {
     /// Adds the lobes of one BSDF, without those of the BSDFs inside it.
-    pub(super) fn bsdf(
-        &mut self,
-        bsdf: &'a Element,
-        name: Option<&str>,
-        used: bool,
-    ) -> Result<(), SceneError> {
+    pub(super) fn bsdf(&mut self, bsdf: &'a Element, name: Option<&str>, used: bool) -> Result<()> {
         let class = bsdf.attribute("type").unwrap_or("no type");
         let unnamed = || format!("{class} at line {}", bsdf.place.line.unwrap_or_default());
         let name = name.map_or_else(unnamed, str::to_owned);
@@ -73,16 +69,10 @@ impl<'a> Reader<'a> {
         self.builder.degrade(shown.as_ref().unwrap_or(&name), class, &bsdf.place, read)
     }
 
-    fn lobes(&mut self, bsdf: &'a Element, name: &str, used: bool) -> Result<(), SceneError> {
+    fn lobes(&mut self, bsdf: &'a Element, name: &str, used: bool) -> Result<()> {
         let class = bsdf.required("type")?;
         let lobe = |reader: &mut Self, suffix, roughness, gamma, fresnel| {
-            let lobe = Lobe {
-                name: suffix,
-                roughness,
-                gamma,
-                fresnel,
-                masking: Some(Masking::Uncorrelated),
-            };
+            let lobe = Lobe { name: suffix, roughness, gamma, fresnel };
             reader.builder.add(name, &bsdf.place, used, lobe)
         };
         let reason = match class {
@@ -134,9 +124,7 @@ impl<'a> Reader<'a> {
             "null" | "circular" | "polarizer" | "retarder" => "lets light pass without microfacets",
             class => {
                 let why = match class {
-                    "phong" | "ward" => {
-                        "of Mitsuba 0.6; a lobe of another family than Student-t, not read"
-                    }
+                    "phong" | "ward" => "of Mitsuba 0.6; a lobe that is no Student-t, not read",
                     "sssbrdf" => "of Mitsuba 0.6; a coat that may be rough, not read",
                     _ => "not a BSDF that is known here",
                 };
@@ -147,7 +135,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Lists the clearcoat of a principled BSDF, if it has one.
-    fn clearcoat(&mut self, bsdf: &'a Element, name: &str) -> Result<(), SceneError> {
+    fn clearcoat(&mut self, bsdf: &'a Element, name: &str) -> Result<()> {
         if self.weight(bsdf, "clearcoat")?.max == 0.0 {
             return Ok(());
         }
@@ -155,24 +143,21 @@ impl<'a> Reader<'a> {
         self.builder.ignore(name, CLEARCOAT, &bsdf.place, reason)
     }
 
-    fn alpha(&mut self, bsdf: &'a Element) -> Result<Roughness, SceneError> {
-        let [both, u, v] = ["alpha", "alpha_u", "alpha_v"].map(|name| named(bsdf, name));
-        let roughness = match (both, u, v) {
-            (_, None, None) => Roughness::isotropic(self.one_alpha(bsdf, "alpha")?),
-            (None, Some(_), Some(_)) => {
-                let (x, y) = (self.one_alpha(bsdf, "alpha_u")?, self.one_alpha(bsdf, "alpha_v")?);
-                Roughness::anisotropic(x, y)
-            }
-            _ => {
-                return Err(bsdf.place.invalid(
-                    "the roughness is either alpha, or both alpha_u and alpha_v; give one or the other",
-                ));
-            }
-        };
-        Ok(roughness)
+    fn alpha(&mut self, bsdf: &'a Element) -> Result<Roughness> {
+        let [both, u, v] = ["alpha", "alpha_u", "alpha_v"].map(|name| named(bsdf, name).is_some());
+        match (both, u, v) {
+            (_, false, false) => Ok(Roughness::isotropic(self.one_alpha(bsdf, "alpha")?)),
+            (false, true, true) => Ok(Roughness::anisotropic(
+                self.one_alpha(bsdf, "alpha_u")?,
+                self.one_alpha(bsdf, "alpha_v")?,
+            )),
+            _ => Err(bsdf.place.invalid(
+                "the roughness is either alpha, or both alpha_u and alpha_v; give one or the other",
+            )),
+        }
     }
 
-    fn one_alpha(&mut self, bsdf: &'a Element, name: &str) -> Result<Interval, SceneError> {
+    fn one_alpha(&mut self, bsdf: &'a Element, name: &str) -> Result<Interval> {
         let alpha = self.property(bsdf, name, 0.1)?;
         if alpha.min < 0.0 {
             return Err(bsdf
@@ -189,7 +174,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The roughness of the principled BSDFs; `scale` is that of the thin BSDF's transmission.
-    fn principled(&mut self, bsdf: &'a Element, scale: Interval) -> Result<Roughness, SceneError> {
+    fn principled(&mut self, bsdf: &'a Element, scale: Interval) -> Result<Roughness> {
         let unit = |value: Interval, name: &str| {
             if value.min >= 0.0 && value.max <= 1.0 {
                 return Ok(value);
@@ -218,7 +203,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A weight that is 0 by default.
-    pub(super) fn weight(&mut self, bsdf: &'a Element, name: &str) -> Result<Interval, SceneError> {
+    pub(super) fn weight(&mut self, bsdf: &'a Element, name: &str) -> Result<Interval> {
         self.property(bsdf, name, 0.0)
     }
 }
@@ -228,7 +213,7 @@ fn coating(class: &str) -> Option<&'static str> {
     matches!(class, "coating" | "roughcoating").then_some("coating")
 }
 
-fn distribution(bsdf: &Element) -> Result<Interval, SceneError> {
+fn distribution(bsdf: &Element) -> Result<Interval> {
     let Some(property) = bsdf.child_named("distribution") else {
         return Ok(BECKMANN);
     };

@@ -1,11 +1,13 @@
 //! Fresnel terms and indices of refraction.
 
-use microfacet_baker::scene::{Place, Reflectance, SceneError, did_you_mean};
+use microfacet_baker::scene::{Place, Reflectance, did_you_mean};
 use microfacet_tables::Interval;
 
 use super::Reader;
 use super::value::{named, number, rgb};
-use crate::builder::{conductor, dielectric, metal};
+use crate::Result;
+use crate::builder::has_word;
+use crate::fresnel::{conductor, dielectric, metal};
 use crate::xml::Element;
 
 /// Indices of refraction by name (`render/ior.h`; Hecht, Optics, 4th edition, at 589 nm).
@@ -37,27 +39,21 @@ const INDICES: [(&str, f64); 23] = [
 
 /// Presets of Mitsuba for which no index is known here (`bsdfs/conductor.cpp`), without the ending
 /// of those that are Palik's measurements.
-const UNKNOWN: [&str; 33] = [
-    "AlAs", "AlSb", "Be", "CsI", "Cu2O", "CuO", "Hg", "HgTe", "Ir", "K", "Li", "MgO", "Mo", "Na",
-    "Nb", "Rh", "Se", "Se-e", "SiC", "SnTe", "Ta", "Te", "Te-e", "ThF4", "TiC", "TiN", "TiO2",
-    "TiO2-e", "V", "VC", "VN", "a-C", "d-C",
-];
+const UNKNOWN: &str = "AlAs AlSb Be CsI Cu2O CuO Hg HgTe Ir K Li MgO Mo Na Nb Rh Se Se-e SiC SnTe \
+                       Ta Te Te-e ThF4 TiC TiN TiO2 TiO2-e V VC VN a-C d-C";
 
 impl<'a> Reader<'a> {
     /// The Fresnel term that was read; none, with a warning, if something impossible was found.
     pub(super) fn fresnel_or_warn(
         &mut self,
-        read: Result<Option<Reflectance>, SceneError>,
-    ) -> Result<Option<Reflectance>, SceneError> {
+        read: Result<Option<Reflectance>>,
+    ) -> Result<Option<Reflectance>> {
         self.ranges.abandon();
-        self.builder.or_warn(read, (None, "the lobe is read without its Fresnel term"))
+        self.builder.without_fresnel(read, None)
     }
 
     /// The dielectric of a principled BSDF, unless metal or tint is mixed in.
-    pub(super) fn principled_fresnel(
-        &mut self,
-        bsdf: &'a Element,
-    ) -> Result<Option<Reflectance>, SceneError> {
+    pub(super) fn principled_fresnel(&mut self, bsdf: &'a Element) -> Result<Option<Reflectance>> {
         if self.weight(bsdf, "metallic")?.max > 0.0 || self.weight(bsdf, "spec_tint")?.max > 0.0 {
             return Ok(None);
         }
@@ -75,7 +71,7 @@ impl<'a> Reader<'a> {
         &mut self,
         bsdf: &'a Element,
         class: &str,
-    ) -> Result<Option<Reflectance>, SceneError> {
+    ) -> Result<Option<Reflectance>> {
         if class.ends_with("conductor") {
             return self.conductor(bsdf);
         }
@@ -93,7 +89,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The Fresnel term of a conductor.
-    fn conductor(&self, bsdf: &Element) -> Result<Option<Reflectance>, SceneError> {
+    fn conductor(&self, bsdf: &Element) -> Result<Option<Reflectance>> {
         let material = bsdf.child_named("material");
         let name = match material {
             Some(material) => material.required("value")?,
@@ -126,10 +122,10 @@ impl<'a> Reader<'a> {
 }
 
 /// The Fresnel term of a preset; none if its index is not known here.
-fn preset(name: &str, place: &Place) -> Result<Option<Reflectance>, SceneError> {
+fn preset(name: &str, place: &Place) -> Result<Option<Reflectance>> {
     let stem = name.strip_suffix("_palik").unwrap_or(name);
     let known = metal(stem).map(Reflectance::from);
-    if known.is_none() && !UNKNOWN.contains(&stem) {
+    if known.is_none() && !has_word(UNKNOWN, stem) {
         return Err(place.invalid(format!(
             "the material \"{name}\" is no preset of Mitsuba; name another, or give eta and k"
         )));
@@ -138,15 +134,12 @@ fn preset(name: &str, place: &Place) -> Result<Option<Reflectance>, SceneError> 
 }
 
 /// The Fresnel term of an index of refraction, or `None` if a texture varies it.
-pub(super) fn constant_dielectric(
-    eta: Interval,
-    bsdf: &Element,
-) -> Result<Option<Reflectance>, SceneError> {
+pub(super) fn constant_dielectric(eta: Interval, bsdf: &Element) -> Result<Option<Reflectance>> {
     eta.is_point().then(|| dielectric(eta.min, &bsdf.place)).transpose()
 }
 
 /// An index of refraction, given as a number or by name.
-fn index(bsdf: &Element, name: &str, default: &str) -> Result<f64, SceneError> {
+fn index(bsdf: &Element, name: &str, default: &str) -> Result<f64> {
     let (text, place) = match named(bsdf, name) {
         Some(property) if property.tag != "string" => return number(property),
         Some(property) => (property.required("value")?, &property.place),

@@ -46,30 +46,22 @@ mod value;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use microfacet_baker::scene::{Format, Scene, SceneError};
+use microfacet_baker::scene::{Format, Scene};
 
-use super::builder::Builder;
-use super::cycle;
-use super::memo::Memo;
-use super::xml::{Element, Key};
+use crate::Result;
+use crate::builder::Builder;
+use crate::references::{Memo, circle};
+use crate::xml::Element;
 use expand::Expansion;
 
 /// Reads a Mitsuba 3 scene.
-pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
+pub(super) fn load(path: &Path) -> Result<Scene> {
     let mut builder = Builder::new(Format::Mitsuba);
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut expansion = Expansion::new(folder, &mut builder);
-    let mut root = expansion.xml.open(path)?;
-    if root.tag != "scene" && root.tag != "bsdf" {
-        return Err(root.place.foreign(format!(
-            "<{}> is not the root of a Mitsuba scene; expected <scene>",
-            root.tag
-        )));
-    }
+    let mut root = expansion.xml.open(path, &["scene", "bsdf"], "a Mitsuba scene")?;
     expansion.element(&mut root, 0)?;
-    let incomplete = expansion.incomplete;
-    let folders = expansion.folders;
-    let included = expansion.xml.includes.found();
+    let Expansion { incomplete, folders, xml, .. } = expansion;
 
     let mut reader = Reader {
         ids: ids(&root),
@@ -82,7 +74,7 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     reader.check_circles(&root);
     let used = reader.used(&root);
     reader.bsdfs(&root, None, &used)?;
-    Ok(reader.builder.finish(included))
+    Ok(reader.builder.finish(xml.includes.found()))
 }
 
 /// The file `name` in the first folder that has it, else in the first folder.
@@ -120,47 +112,32 @@ struct Reader<'a> {
     /// Whether the scene is of Mitsuba 0.6 or before.
     is_older: bool,
     /// Ranges of the textures that were evaluated.
-    ranges: Memo<Key<'a>>,
+    ranges: Memo<&'a Element>,
 }
 
 impl<'a> Reader<'a> {
     /// The BSDFs that shapes use, themselves or inside others; `None` if that cannot be known.
-    fn used(&mut self, root: &'a Element) -> Option<HashSet<Key<'a>>> {
-        let of = |tag| {
-            let mut found = Vec::new();
-            root.walk(&mut |element| {
-                if element.tag == tag {
-                    found.push(element);
-                }
-            });
-            found
-        };
+    fn used(&mut self, root: &'a Element) -> Option<HashSet<&'a Element>> {
         if self.incomplete {
             return None;
         }
         // Without shapes each is followed too, for references to what does not exist.
-        let mut shapes = of("shape");
-        let everything = shapes.is_empty();
+        let mut pending = root.all("shape");
+        let everything = pending.is_empty();
         if everything {
-            shapes = of("bsdf");
+            pending = root.all("bsdf");
         }
         let mut used = HashSet::new();
-        while let Some(element) = shapes.pop() {
-            for child in &element.children {
-                let child = match &child.tag[..] {
-                    "bsdf" => child,
-                    "ref" => match self.referred(child) {
-                        Ok(bsdf) if bsdf.tag == "bsdf" => bsdf,
-                        Ok(_) => continue,
-                        Err(error) => {
-                            self.builder.warn(&error.place, error.kind.to_string());
-                            continue;
-                        }
-                    },
-                    _ => continue,
-                };
-                if used.insert(child.key()) {
-                    shapes.push(child);
+        while let Some(element) = pending.pop() {
+            for mut child in &element.children {
+                if child.tag == "ref" {
+                    match self.referred(child) {
+                        Ok(found) => child = found,
+                        Err(error) => self.builder.warn(&error.place, error.kind.to_string()),
+                    }
+                }
+                if child.tag == "bsdf" && used.insert(child) {
+                    pending.push(child);
                 }
             }
         }
@@ -169,15 +146,14 @@ impl<'a> Reader<'a> {
 
     /// Warns of an element that has itself inside, by `<ref>`.
     fn check_circles(&mut self, root: &'a Element) {
-        let inside = |element: Key<'a>| {
-            let own = element.0.children.iter();
-            let id = element.0.attribute("id").filter(|_| element.0.tag == "ref");
-            own.chain(id.and_then(|id| self.ids.get(id).copied())).map(Element::key).collect()
+        let inside = |element: &'a Element| {
+            let id = element.attribute("id").filter(|_| element.tag == "ref");
+            element.children.iter().chain(id.and_then(|id| self.ids.get(id).copied())).collect()
         };
-        let Some(circle) = cycle::find([root.key()], inside) else {
+        let Some(circle) = circle([root], inside) else {
             return;
         };
-        let references = circle.iter().map(|element| element.0).filter(|e| e.tag == "ref");
+        let references = circle.into_iter().filter(|element| element.tag == "ref");
         // A circle has a reference, since elements are a tree without them.
         let last = references.clone().next_back().unwrap_or(root);
         let names: Vec<&str> =
@@ -188,7 +164,7 @@ impl<'a> Reader<'a> {
     }
 
     /// What a `<ref>` refers to.
-    fn referred(&self, reference: &Element) -> Result<&'a Element, SceneError> {
+    fn referred(&self, reference: &Element) -> Result<&'a Element> {
         let id = reference.required("id")?;
         self.ids.get(id).copied().ok_or_else(|| {
             let hint = self.builder.did_you_mean(id, self.ids.keys().copied());
@@ -201,12 +177,12 @@ impl<'a> Reader<'a> {
         &mut self,
         element: &'a Element,
         outer: Option<&'a str>,
-        used: &Option<HashSet<Key<'a>>>,
-    ) -> Result<(), SceneError> {
+        used: &Option<HashSet<&'a Element>>,
+    ) -> Result<()> {
         let named = matches!(&element.tag[..], "bsdf" | "shape");
         let name = element.attribute("id").filter(|id| named && !id.is_empty()).or(outer);
         if element.tag == "bsdf" {
-            let used = used.as_ref().is_none_or(|used| used.contains(&element.key()));
+            let used = used.as_ref().is_none_or(|used| used.contains(element));
             self.bsdf(element, name, used)?;
         }
         element.children.iter().try_for_each(|child| self.bsdfs(child, name, used))

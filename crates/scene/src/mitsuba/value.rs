@@ -1,9 +1,9 @@
 //! Numbers, and the ranges of textures.
 
-use microfacet_baker::scene::SceneError;
 use microfacet_tables::Interval;
 
 use super::{Reader, find};
+use crate::Result;
 use crate::builder::{Row, names_of};
 use crate::texture::{Channel, Encoding};
 use crate::xml::Element;
@@ -56,11 +56,10 @@ impl<'a> Reader<'a> {
             match child.attribute("name") {
                 Some(name) if known.contains(&&newer(name)[..]) => {}
                 Some(name) => self.builder.check_name(class, name, &known, &child.place),
-                None => {
-                    let warning =
-                        format!("<{}> in {class} has no name, and is not read", child.tag);
-                    self.builder.warn(&child.place, warning);
-                }
+                None => self.builder.warn(
+                    &child.place,
+                    format!("<{}> in {class} has no name, and is not read", child.tag),
+                ),
             }
         }
     }
@@ -71,7 +70,7 @@ impl<'a> Reader<'a> {
         element: &'a Element,
         name: &str,
         default: f64,
-    ) -> Result<Interval, SceneError> {
+    ) -> Result<Interval> {
         match named(element, name) {
             Some(property) => self.value(property),
             None => Ok(Interval::point(default)),
@@ -79,7 +78,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A number, or the range of a texture.
-    fn value(&mut self, property: &'a Element) -> Result<Interval, SceneError> {
+    fn value(&mut self, property: &'a Element) -> Result<Interval> {
         match &property.tag[..] {
             "float" | "integer" | "spectrum" => number(property).map(Interval::point),
             "rgb" => rgb(property).map(|rgb| Interval::point(luminance(rgb))),
@@ -94,12 +93,11 @@ impl<'a> Reader<'a> {
                 Err(error) => Err(error),
             },
             "texture" => {
-                let key = property.key();
-                if let Some(known) = self.ranges.begin(key, &property.place)? {
+                if let Some(known) = self.ranges.begin(property, &property.place)? {
                     return Ok(known);
                 }
                 let range = self.texture(property)?;
-                self.ranges.end(key, range, &property.place)
+                self.ranges.end(property, range, &property.place)
             }
             tag => Err(property
                 .place
@@ -107,7 +105,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn texture(&mut self, texture: &'a Element) -> Result<Interval, SceneError> {
+    fn texture(&mut self, texture: &'a Element) -> Result<Interval> {
         let place = &texture.place;
         self.check_properties(&TEXTURES, texture);
         match texture.required("type")? {
@@ -135,7 +133,7 @@ impl<'a> Reader<'a> {
 }
 
 /// The number in the attribute "value".
-pub(super) fn number(property: &Element) -> Result<f64, SceneError> {
+pub(super) fn number(property: &Element) -> Result<f64> {
     let text = property.required("value")?;
     match text.trim().parse() {
         Ok(number) if f64::is_finite(number) => Ok(number),
@@ -153,7 +151,7 @@ pub(super) fn number(property: &Element) -> Result<f64, SceneError> {
 }
 
 /// The three numbers in the attribute "value", or one that stands for all.
-pub(super) fn rgb(property: &Element) -> Result<[f64; 3], SceneError> {
+pub(super) fn rgb(property: &Element) -> Result<[f64; 3]> {
     let text = property.required("value")?;
     let numbers: Option<Vec<f64>> = text
         .split([',', ' '])

@@ -5,13 +5,27 @@ use std::path::Path;
 use microfacet_baker::scene::{Reflectance, SceneError};
 use microfacet_sampler::Metal;
 
-use super::definition::Definition;
-use super::spectra;
-use super::syntax::Parameter;
-use crate::builder::{conductor, dielectric};
+use super::definition::{Definition, Parameter};
+use crate::Result;
+use crate::fresnel::{conductor, dielectric, metal};
 
 /// pbrt lowers a conductor's reflectance to this, for which k is still finite.
 const MOST_REFLECTIVE: f64 = 0.9999;
+
+/// Indices of refraction of pbrt's glasses at the d line, 587.56 nm.
+///
+/// They are read from the tables of pbrt's `util/spectrum.cpp`, which are of refractiveindex.info
+/// (CC0), linearly between the two nearest wavelengths as pbrt does, and rounded to five decimals.
+/// Under the names F5, F10 and F11 it has the tables of SF5, SF10 and SF11.
+const GLASSES: [(&str, f64); 7] = [
+    ("glass-BK7", 1.516_80),
+    ("glass-BAF10", 1.670_00),
+    ("glass-FK51A", 1.486_56),
+    ("glass-LASF9", 1.850_27),
+    ("glass-F5", 1.672_72),
+    ("glass-F10", 1.728_28),
+    ("glass-F11", 1.784_74),
+];
 
 impl Parameter {
     /// Three numbers, if it is a colour.
@@ -45,10 +59,7 @@ impl Parameter {
 }
 
 /// The Fresnel term of an interface, unless a spectrum or a texture leaves it open.
-pub(super) fn fresnel(
-    material: &Definition,
-    prefix: &str,
-) -> Result<Option<Reflectance>, SceneError> {
+pub(super) fn fresnel(material: &Definition, prefix: &str) -> Result<Option<Reflectance>> {
     match (&material.class[..], prefix) {
         ("conductor", _) => under(1.0, material, prefix),
         ("coatedconductor", "conductor.") => match outside(material, "interface.")? {
@@ -60,14 +71,17 @@ pub(super) fn fresnel(
 }
 
 /// The dielectric whose outside is the air.
-fn outside(material: &Definition, prefix: &str) -> Result<Option<Reflectance>, SceneError> {
+fn outside(material: &Definition, prefix: &str) -> Result<Option<Reflectance>> {
     // The defaults in materials.cpp.
     let default = if material.class == "subsurface" { 1.33 } else { 1.5 };
     let Some(eta) = material.parameter(&format!("{prefix}eta")) else {
         return Ok(Some(Reflectance::dielectric(default)));
     };
     let index = match eta.spectrum() {
-        Some(name) => spectra::glass(name).ok_or_else(|| eta.unknown(name, "float"))?,
+        Some(name) => {
+            let glass = GLASSES.iter().find(|(known, _)| *known == name);
+            glass.map(|&(_, index)| index).ok_or_else(|| eta.unknown(name, "float"))?
+        }
         None if eta.kind == "float" => eta.number()?,
         None => return Ok(None),
     };
@@ -76,11 +90,7 @@ fn outside(material: &Definition, prefix: &str) -> Result<Option<Reflectance>, S
 
 /// The conductor under a dielectric of index `coat`, to which its own index is relative
 /// (`ConductorMaterial` and `CoatedConductorMaterial::GetBxDF`).
-fn under(
-    coat: f64,
-    material: &Definition,
-    prefix: &str,
-) -> Result<Option<Reflectance>, SceneError> {
+fn under(coat: f64, material: &Definition, prefix: &str) -> Result<Option<Reflectance>> {
     let parameter = |name: &str| material.parameter(&format!("{prefix}{name}"));
     let (eta, k) = (parameter("eta"), parameter("k"));
     let index = match material.parameter("reflectance") {
@@ -106,13 +116,15 @@ fn part(
     parameter: Option<&Parameter>,
     end: &str,
     of: fn(Metal) -> [f64; 3],
-) -> Result<Option<[f64; 3]>, SceneError> {
+) -> Result<Option<[f64; 3]>> {
     let Some(parameter) = parameter else {
         return Ok(Some(of(Metal::Copper)));
     };
     match parameter.spectrum() {
+        // Such as "metal-Au-eta".
         Some(name) => {
-            let metal = spectra::metal(name, end);
+            let symbol = name.strip_prefix("metal-").and_then(|name| name.strip_suffix(end));
+            let metal = symbol.and_then(metal);
             metal.map(|metal| Some(of(metal))).ok_or_else(|| parameter.unknown(name, "rgb"))
         }
         None => Ok(parameter.rgb()),
@@ -121,7 +133,7 @@ fn part(
 
 /// The k with which a conductor of eta = 1 reflects a colour at normal incidence, where
 /// F = k²/(k² + 4).
-fn reflecting(reflectance: &Parameter) -> Result<Option<[f64; 3]>, SceneError> {
+fn reflecting(reflectance: &Parameter) -> Result<Option<[f64; 3]>> {
     if let Some(name) = reflectance.spectrum() {
         return Err(reflectance.unknown(name, "rgb"));
     }

@@ -1,14 +1,13 @@
 //! The lobes of pbrt's materials.
 
-use microfacet_baker::scene::{Masking, Roughness, SceneError};
+use microfacet_baker::scene::Roughness;
 use microfacet_tables::Interval;
 
-use super::Reader;
-use super::definition::{Definition, OLDER};
-use super::directives::UPGRADE;
+use super::definition::{Definition, OLDER, Parameter};
 use super::fresnel::fresnel;
-use super::syntax::Parameter;
-use crate::builder::{GGX, Lobe};
+use super::{Reader, UPGRADE};
+use crate::Result;
+use crate::builder::{Lobe, has_word};
 
 /// If no α reaches this, pbrt treats the surface as smooth
 /// (`TrowbridgeReitzDistribution::EffectivelySmooth`).
@@ -19,7 +18,7 @@ const LEAST: f64 = 1e-4;
 
 impl Reader {
     /// Adds the lobes of a material.
-    pub(super) fn lobes(&mut self, material: &Definition, used: bool) -> Result<(), SceneError> {
+    pub(super) fn lobes(&mut self, material: &Definition, used: bool) -> Result<()> {
         let (name, place) = (&material.name, &material.place);
         let class = &material.class;
         let mut ignore = |reason| self.builder.ignore(name, class, place, reason);
@@ -41,9 +40,9 @@ impl Reader {
             "" | "interface" | "none" => {
                 return ignore("the boundary of a medium, without a surface");
             }
-            class if OLDER.contains(&class) => {
+            class if has_word(OLDER, class) => {
                 let why = format!("a material of pbrt-v3; {UPGRADE}");
-                return self.builder.not_understood(name, class, place, why);
+                return self.builder.not_understood(name, class, place, &why);
             }
             class => {
                 let why = "not a material of pbrt-v4";
@@ -66,16 +65,14 @@ impl Reader {
         used: bool,
         name: Option<&'static str>,
         prefix: &str,
-    ) -> Result<(), SceneError> {
+    ) -> Result<()> {
         let roughness = self.roughness(material, prefix)?;
-        let without = (None, "the lobe is read without its Fresnel term");
-        let fresnel = self.builder.or_warn(fresnel(material, prefix), without)?;
-        let masking = Some(Masking::HeightCorrelated);
-        let lobe = Lobe { name, roughness, gamma: GGX, fresnel, masking };
+        let fresnel = self.builder.without_fresnel(fresnel(material, prefix), None)?;
+        let lobe = Lobe::ggx(name, roughness, fresnel);
         self.builder.add(&material.name, &material.place, used, lobe)
     }
 
-    fn roughness(&mut self, material: &Definition, prefix: &str) -> Result<Roughness, SceneError> {
+    fn roughness(&mut self, material: &Definition, prefix: &str) -> Result<Roughness> {
         if material.class == "thindielectric" {
             return Ok(Roughness::Smooth);
         }
@@ -107,7 +104,7 @@ impl Reader {
         material: &Definition,
         parameter: Option<&Parameter>,
         remap: bool,
-    ) -> Result<Interval, SceneError> {
+    ) -> Result<Interval> {
         let Some(parameter) = parameter else {
             return Ok(Interval::point(0.0));
         };

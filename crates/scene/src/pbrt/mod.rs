@@ -38,44 +38,58 @@
 //! mixtures of v3 are followed, and its mapping of the roughness of `subsurface`, which is another,
 //! is warned of.
 //!
-//! The file is read as a stream. Everything that belongs to shapes is skipped without being stored.
+//! Everything that belongs to shapes is skipped without being read.
 //!
 //! [format]: https://pbrt.org/fileformat-v4
 
 mod definition;
-mod directives;
 mod fresnel;
 mod materials;
 mod parameters;
 mod references;
-mod spectra;
 mod syntax;
 mod textures;
-mod token;
 
 use std::collections::HashMap;
-use std::fs::File;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use flate2::read::MultiGzDecoder;
+use microfacet_baker::scene::{Format, Place, Scene, did_you_mean};
 
-use microfacet_baker::input;
-use microfacet_baker::input::unmarked_stream;
-use microfacet_baker::scene::{Format, Place, Scene, SceneError};
-
-use self::definition::Definition;
+use self::definition::{Definition, Parameter};
 use self::parameters::{MATERIALS, TEXTURES};
-use self::syntax::{Parameter, parameters, quoted, skip_arguments};
-use self::token::{Token, Tokens};
-use super::builder::Builder;
-use super::include::{Includes, absent};
-use super::memo::Memo;
+use self::syntax::{Token, Tokens};
+use crate::Result;
+use crate::builder::{Builder, has_word, shortened};
+use crate::include::Includes;
 use crate::limits;
+use crate::references::Memo;
+
+/// The directives that are followed.
+const FOLLOWED: &str = "Attribute AttributeBegin AttributeEnd Import Include MakeNamedMaterial \
+                        Material NamedMaterial ObjectBegin ObjectEnd Shape Texture";
+
+/// Those that say nothing of materials.
+const PASSED_OVER: &str = "Accelerator AreaLightSource Camera ColorSpace ConcatTransform \
+                           CoordSysTransform CoordinateSystem Film Identity Integrator LightSource \
+                           LookAt MakeNamedMedium MediumInterface ObjectInstance Option PixelFilter \
+                           ReverseOrientation Rotate Sampler Scale TransformBegin TransformEnd \
+                           Transform TransformTimes Translate WorldBegin WorldEnd";
+
+/// What converts scenes of older versions.
+const UPGRADE: &str = "`pbrt --upgrade old.pbrt > new.pbrt` of pbrt-v4 converts scenes of pbrt-v3";
+
+/// The last version that has a directive which pbrt-v4 does not have.
+fn older(directive: &str) -> Option<&'static str> {
+    match directive {
+        "SearchPath" => Some("pbrt-v1"),
+        "Renderer" | "SurfaceIntegrator" | "Volume" | "VolumeIntegrator" => Some("pbrt-v2"),
+        _ => None,
+    }
+}
 
 /// Reads a pbrt-v4 scene.
-pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
+pub(super) fn load(path: &Path) -> Result<Scene> {
     let mut reader = Reader {
         folder: path.parent().unwrap_or(Path::new("")).to_owned(),
         builder: Builder::new(Format::Pbrt),
@@ -93,16 +107,9 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
         older: false,
         of_v3: false,
     };
-    let place = Place::file(path);
-    let open = open(path)?;
-    reader.includes.enter(path, &place)?;
-    reader.file(open, path)?;
+    let text = reader.includes.open(path)?;
+    reader.statements(&mut Tokens::new(&text, path))?;
     reader.finish()
-}
-
-/// Opens a file, of any size since it is read as a stream.
-fn open(path: &Path) -> Result<File, SceneError> {
-    input::open(path, u64::MAX).map_err(|error| Place::file(path).io(error))
 }
 
 /// The part of pbrt's graphics state that decides which material a shape uses.
@@ -151,61 +158,42 @@ struct Reader {
 }
 
 impl Reader {
-    fn file(&mut self, file: File, path: &Path) -> Result<(), SceneError> {
-        if path.extension().is_some_and(|extension| extension == "gz") {
-            self.text(self.includes.metered(MultiGzDecoder::new(file)), path)
-        } else {
-            self.text(self.includes.metered(file), path)
-        }
-    }
-
-    fn text(&mut self, text: impl Read, path: &Path) -> Result<(), SceneError> {
-        let text = unmarked_stream(text).map_err(|error| Place::file(path).io(error))?;
-        self.statements(&mut Tokens::new(text, path))
-    }
-
-    fn statements<R: Read>(&mut self, tokens: &mut Tokens<R>) -> Result<(), SceneError> {
+    fn statements(&mut self, tokens: &mut Tokens<'_>) -> Result<()> {
         while let Some(token) = tokens.next()? {
-            if token != Token::Word {
+            let Token::Word(directive) = token else {
                 return Err(tokens.place().syntax(format!(
                     "expected a directive such as Material or Shape, not \"{}\"",
-                    tokens.text()
+                    token.shown()
                 )));
-            }
-            self.statement(tokens)?;
+            };
+            self.statement(&directive, tokens)?;
         }
         Ok(())
     }
 
-    fn statement<R: Read>(&mut self, tokens: &mut Tokens<R>) -> Result<(), SceneError> {
+    fn statement(&mut self, directive: &str, tokens: &mut Tokens<'_>) -> Result<()> {
         let place = tokens.place();
-        match tokens.text() {
+        match directive {
             "Shape" => {
                 self.shapes = true;
                 if let Some(slot) = self.state.material {
                     self.slots[slot].used = true;
                 }
-                skip_arguments(tokens)
+                tokens.skip_arguments()
             }
             "AttributeBegin" | "ObjectBegin" => {
-                if self.saved.len() == limits::PBRT_BLOCKS {
-                    return Err(place.syntax(format!(
-                        "blocks are nested more than {} deep; an AttributeEnd may be missing",
-                        limits::PBRT_BLOCKS
-                    )));
-                }
+                check_count(self.saved.len(), "blocks in each other", &place)?;
                 self.saved.push((self.state.clone(), place));
-                skip_arguments(tokens)
+                tokens.skip_arguments()
             }
-            directive @ ("AttributeEnd" | "ObjectEnd") => {
-                let unmatched = format!("{directive} without its beginning");
-                let (state, _) = self.saved.pop().ok_or_else(|| place.syntax(unmatched))?;
-                self.state = state;
-                skip_arguments(tokens)
+            "AttributeEnd" | "ObjectEnd" => {
+                let unmatched = || place.syntax(format!("{directive} without its beginning"));
+                (self.state, _) = self.saved.pop().ok_or_else(unmatched)?;
+                tokens.skip_arguments()
             }
             "Attribute" => {
-                let target = quoted(tokens, "the target of the attributes")?;
-                let parameters = parameters(tokens)?;
+                let target = tokens.text("the target of the attributes")?;
+                let parameters = tokens.parameters()?;
                 if target == "material" {
                     self.hold(&parameters, &place)?;
                     self.check_attributes(&parameters);
@@ -213,39 +201,35 @@ impl Reader {
                 }
                 Ok(())
             }
-            "Include" => {
-                let name = quoted(tokens, "the name of a file")?;
-                self.include(&name, &place)
-            }
-            "Import" => {
-                let name = quoted(tokens, "the name of a file")?;
+            "Include" | "Import" => {
+                let name = tokens.text("the name of a file")?;
                 let state = self.state.clone();
                 self.include(&name, &place)?;
-                self.state = state;
+                if directive == "Import" {
+                    self.state = state;
+                }
                 Ok(())
             }
             "Material" => {
-                let class = quoted(tokens, "the type of the material")?;
-                let own = parameters(tokens)?;
+                let class = tokens.text("the type of the material")?;
+                let own = tokens.parameters()?;
                 self.hold(&own, &place)?;
                 self.check_parameters(&MATERIALS, &class, &own);
-                let parameters = self.with_attributes(own);
                 // The empty type is an old word for this one.
                 let class = if class.is_empty() { "interface".to_owned() } else { class };
                 let name = self.by_place(&class, &place);
                 let slot = self.slot(&place)?;
-                self.define(slot, Definition::new(name, class, parameters, place));
+                self.define(slot, name, class, own, place);
                 self.state.material = Some(slot);
                 Ok(())
             }
             "MakeNamedMaterial" => {
-                let name = quoted(tokens, "the name of the material")?;
-                let own = parameters(tokens)?;
+                let name = tokens.text("the name of the material")?;
+                let own = tokens.parameters()?;
                 self.hold(&own, &place)?;
                 let class = own.iter().chain(&self.state.attributes).find(|p| p.name == "type");
                 let class = class.and_then(|p| p.values.last().cloned()).unwrap_or_default();
                 self.check_parameters(&MATERIALS, &class, &own);
-                let parameters = self.with_attributes(own);
                 let slot = self.named(&name, &place)?;
                 if let Some(first) = &self.slots[slot].definition {
                     let warning = format!(
@@ -258,72 +242,67 @@ impl Reader {
                 }
                 let name =
                     if name.trim().is_empty() { self.by_place(&class, &place) } else { name };
-                self.define(slot, Definition::new(name, class, parameters, place));
+                self.define(slot, name, class, own, place);
                 Ok(())
             }
             "NamedMaterial" => {
-                let name = quoted(tokens, "the name of a material")?;
+                let name = tokens.text("the name of a material")?;
                 self.state.material = Some(self.named(&name, &place)?);
                 // A parameter list is allowed by the grammar here, and has no meaning.
-                parameters(tokens).map(drop)
+                tokens.parameters().map(drop)
             }
             "Texture" => {
-                let name = quoted(tokens, "the name of the texture")?;
-                let kind = quoted(tokens, "the type of the texture, \"float\" or \"spectrum\"")?;
-                let class = quoted(tokens, "the class of the texture")?;
-                let parameters = parameters(tokens)?;
+                let name = tokens.text("the name of the texture")?;
+                let kind = tokens.text("the type of the texture, \"float\" or \"spectrum\"")?;
+                let class = tokens.text("the class of the texture")?;
+                let parameters = tokens.parameters()?;
                 if kind == "float" {
                     self.hold(&parameters, &place)?;
                     self.check_parameters(&TEXTURES, &class, &parameters);
-                    if self.textures.len() == limits::MATERIALS {
-                        return Err(place.too_large(format!(
-                            "the scene has more than {} textures; split it",
-                            limits::MATERIALS
-                        )));
-                    }
-                    let texture = Definition::new(name.clone(), class, parameters, place);
+                    check_count(self.textures.len(), "textures", &place)?;
+                    let texture = Definition { name: name.clone(), class, parameters, place };
                     self.textures.insert(name, Rc::new(texture));
                 }
                 Ok(())
             }
-            "ActiveTransform" => {
-                // Its argument is a word, without quotes.
-                tokens.next()?;
-                Ok(())
-            }
-            directive if directives::is_passed_over(directive) => skip_arguments(tokens),
-            directive => {
-                let warning = directives::older(directive)
-                    .ok_or_else(|| place.syntax(directives::unknown(directive)))?;
+            // Its argument is a word, without quotes.
+            "ActiveTransform" => tokens.next().map(drop),
+            other if has_word(PASSED_OVER, other) => tokens.skip_arguments(),
+            other => {
+                let Some(version) = older(other) else {
+                    let known: Vec<&str> =
+                        PASSED_OVER.split(' ').chain(FOLLOWED.split(' ')).collect();
+                    let (word, hint) = (shortened(other), did_you_mean(other, &known));
+                    return Err(place.syntax(format!("unknown directive {word}{hint}")));
+                };
                 // One of them tells the version.
                 if !std::mem::replace(&mut self.older, true) {
+                    let warning = format!(
+                        "{other} is a directive of {version}; such ones are passed over, and \
+                         materials are read as those of pbrt-v4; {UPGRADE}"
+                    );
                     self.builder.warn(&place, warning);
                 }
-                skip_arguments(tokens)
+                tokens.skip_arguments()
             }
         }
     }
 
-    fn include(&mut self, name: &str, place: &Place) -> Result<(), SceneError> {
+    fn include(&mut self, name: &str, place: &Place) -> Result<()> {
         let path = self.folder.join(name);
-        if !self.includes.enter(&path, place)? {
+        let said = "its materials are not seen, and all others count as used";
+        let text = self.includes.include((name, &path), place, &mut self.builder, said)?;
+        let Some(text) = text else {
             self.incomplete = true;
-            self.builder.warn(
-                place,
-                format!(
-                    "{}; its materials are not seen, and all others count as used",
-                    absent(name, &path)
-                ),
-            );
             return Ok(());
-        }
-        self.file(open(&path)?, &path)?;
+        };
+        self.statements(&mut Tokens::new(&text, &path))?;
         self.includes.leave();
         Ok(())
     }
 
     /// Counts what is kept of a directive at `place`.
-    fn hold(&mut self, parameters: &[Rc<Parameter>], place: &Place) -> Result<(), SceneError> {
+    fn hold(&mut self, parameters: &[Rc<Parameter>], place: &Place) -> Result<()> {
         self.held += parameters.iter().map(|parameter| parameter.bytes() as u64).sum::<u64>();
         if self.held <= limits::PBRT_HELD {
             return Ok(());
@@ -335,33 +314,23 @@ impl Reader {
     }
 
     /// Puts parameters before those in force: the first of a name counts.
-    fn attributes(
-        &mut self,
-        mut parameters: Vec<Rc<Parameter>>,
-        place: &Place,
-    ) -> Result<(), SceneError> {
+    fn attributes(&mut self, mut parameters: Vec<Rc<Parameter>>, place: &Place) -> Result<()> {
         parameters.append(&mut self.state.attributes);
         for parameter in parameters {
             let attributes = &mut self.state.attributes;
             if attributes.iter().any(|first| first.name == parameter.name) {
                 continue;
             }
-            if attributes.len() == limits::PBRT_PARAMETERS {
+            if attributes.len() == limits::PARAMETERS {
                 return Err(place.too_large(format!(
                     "more than {} attributes of materials are in force; remove those that pbrt does \
                      not read",
-                    limits::PBRT_PARAMETERS
+                    limits::PARAMETERS
                 )));
             }
             attributes.push(parameter);
         }
         Ok(())
-    }
-
-    fn with_attributes(&self, mut parameters: Vec<Rc<Parameter>>) -> Vec<Rc<Parameter>> {
-        // The first parameter of a name counts: a material's own comes before the default.
-        parameters.extend(self.state.attributes.iter().cloned());
-        parameters
     }
 
     /// The name of a material that has none: its type and its place, short enough for a name.
@@ -371,40 +340,42 @@ impl Reader {
         format!("{class} at {}:{}", file.display(), place.line.unwrap_or_default())
     }
 
-    fn slot(&mut self, place: &Place) -> Result<usize, SceneError> {
-        if self.slots.len() == limits::MATERIALS {
-            return Err(place.too_large(format!(
-                "the scene has more than {} materials; split it",
-                limits::MATERIALS
-            )));
-        }
+    fn slot(&mut self, place: &Place) -> Result<usize> {
+        check_count(self.slots.len(), "materials", place)?;
         self.slots.push(Slot { used: false, definition: None, place: place.clone() });
         Ok(self.slots.len() - 1)
     }
 
-    fn named(&mut self, name: &str, place: &Place) -> Result<usize, SceneError> {
-        match self.names.get(name) {
-            Some(&slot) => Ok(slot),
-            None => {
-                let slot = self.slot(place)?;
-                self.names.insert(name.to_owned(), slot);
-                Ok(slot)
-            }
+    fn named(&mut self, name: &str, place: &Place) -> Result<usize> {
+        if let Some(&slot) = self.names.get(name) {
+            return Ok(slot);
         }
+        let slot = self.slot(place)?;
+        self.names.insert(name.to_owned(), slot);
+        Ok(slot)
     }
 
-    fn define(&mut self, slot: usize, definition: Definition) {
+    fn define(
+        &mut self,
+        slot: usize,
+        name: String,
+        class: String,
+        mut parameters: Vec<Rc<Parameter>>,
+        place: Place,
+    ) {
+        // The first parameter of a name counts: a material's own comes before the default.
+        parameters.extend(self.state.attributes.iter().cloned());
+        let definition = Definition { name, class, parameters, place };
         self.of_v3 |= definition.is_of_v3();
         self.slots[slot].definition = Some(definition);
         self.defined.push(slot);
     }
 
-    fn finish(mut self) -> Result<Scene, SceneError> {
+    fn finish(mut self) -> Result<Scene> {
         if let Some((_, place)) = self.saved.pop() {
             return Err(place.syntax("this block has no end"));
         }
-        self.check_references();
-        self.use_parts_of_mixtures();
+        self.follow_references();
         let everything = !self.shapes || self.incomplete;
         for slot in std::mem::take(&mut self.defined) {
             let used = everything || self.slots[slot].used;
@@ -414,4 +385,12 @@ impl Reader {
         }
         Ok(self.builder.finish(self.includes.found()))
     }
+}
+
+/// Checks that there may be one more of what there are `count`.
+fn check_count(count: usize, what: &str, place: &Place) -> Result<()> {
+    if count < limits::MATERIALS {
+        return Ok(());
+    }
+    Err(place.too_large(format!("the scene has more than {} {what}; split it", limits::MATERIALS)))
 }

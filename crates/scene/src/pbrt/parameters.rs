@@ -3,7 +3,8 @@
 use std::rc::Rc;
 
 use super::Reader;
-use super::syntax::Parameter;
+use super::definition::Parameter;
+use crate::builder::has_word;
 
 /// Classes, types, and the names that a parameter of one of those types may have in each of those
 /// classes; `*` is all.
@@ -43,17 +44,8 @@ pub(super) const MATERIALS: [Row; 19] = [
 ];
 
 /// Names that only materials without lobes have; an attribute may be meant for those.
-const WITHOUT_LOBES: [&str; 9] = [
-    "alpha",
-    "beta_m",
-    "beta_n",
-    "color",
-    "eumelanin",
-    "filename",
-    "pheomelanin",
-    "sigma",
-    "transmittance",
-];
+const WITHOUT_LOBES: &str =
+    "alpha beta_m beta_n color eumelanin filename pheomelanin sigma transmittance";
 
 const PLANE: &str = "checkerboard dots bilerp imagemap";
 
@@ -75,8 +67,9 @@ pub(super) const TEXTURES: [Row; 14] = [
     ("imagemap", "bool", "invert"),
 ];
 
-fn has(words: &str, word: &str) -> bool {
-    words.split(' ').any(|one| one == word || one == "*")
+/// Whether a row is of a class.
+fn is_of((classes, ..): &Row, class: &str) -> bool {
+    *classes == "*" || has_word(classes, class)
 }
 
 impl Reader {
@@ -88,17 +81,17 @@ impl Reader {
         class: &str,
         parameters: &[Rc<Parameter>],
     ) {
-        if !rows.iter().any(|(classes, ..)| *classes != "*" && has(classes, class)) {
+        if !rows.iter().any(|(classes, ..)| has_word(classes, class)) {
             return;
         }
-        let rows = rows.iter().filter(|(classes, ..)| has(classes, class));
+        let rows = rows.iter().filter(|row| is_of(row, class));
         let named = rows.flat_map(|(_, types, names)| names.split(' ').map(move |n| (n, types)));
         let named: Vec<(&str, &str)> = named.map(|(name, types)| (name, *types)).collect();
         let known: Vec<&str> = named.iter().map(|&(name, _)| name).collect();
         for Parameter { kind, name, place, .. } in parameters.iter().map(Rc::as_ref) {
             self.builder.check_name(class, name, &known, place);
             if let Some((_, types)) = named.iter().find(|(known, _)| known == name)
-                && !has(types, kind)
+                && !has_word(types, kind)
             {
                 let types = types.replace(' ', ", ");
                 let warning = format!("{name} of {class} has the type {kind}; it may be {types}");
@@ -110,7 +103,7 @@ impl Reader {
     /// Warns of attributes that no material has.
     pub(super) fn check_attributes(&mut self, parameters: &[Rc<Parameter>]) {
         let known = MATERIALS.iter().flat_map(|(_, _, names)| names.split(' '));
-        let mut known: Vec<&str> = known.chain(WITHOUT_LOBES).collect();
+        let mut known: Vec<&str> = known.chain(WITHOUT_LOBES.split(' ')).collect();
         known.sort_unstable();
         known.dedup();
         for Parameter { name, place, .. } in parameters.iter().map(Rc::as_ref) {

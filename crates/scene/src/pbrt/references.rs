@@ -2,23 +2,54 @@
 
 use microfacet_baker::scene::Place;
 
+use super::Reader;
 use super::definition::Definition;
-use super::syntax::Parameter;
-use super::{Reader, Slot};
-use crate::cycle;
+use crate::references::circle;
 
 impl Reader {
-    /// Warns of names that nothing defines.
-    pub(super) fn check_references(&mut self) {
-        let undefined = |(_, slot): &(&String, &usize)| self.slots[**slot].definition.is_none();
-        let mut undefined: Vec<_> = self.names.iter().filter(undefined).collect();
-        undefined.sort_unstable_by_key(|&(_, &slot)| slot);
-        let warnings: Vec<(Place, String)> = undefined
-            .into_iter()
-            .map(|(name, &slot)| (self.slots[slot].place.clone(), self.undefined(name)))
-            .collect();
-        for (place, warning) in warnings {
+    /// Warns of names that nothing defines, and of mixtures that are parts of themselves; marks the
+    /// parts of used mixtures as used.
+    pub(super) fn follow_references(&mut self) {
+        let mut named: Vec<(&String, usize)> =
+            self.names.iter().map(|(name, &slot)| (name, slot)).collect();
+        named.sort_unstable_by_key(|&(_, slot)| slot);
+        let named = named.into_iter().filter(|&(_, slot)| self.slots[slot].definition.is_none());
+        let named = named.map(|(name, slot)| (name, &self.slots[slot].place));
+        // One that a NamedMaterial refers to is warned of there.
+        let parts = (0..self.slots.len()).flat_map(|slot| self.parts(slot));
+        let parts = parts.filter(|(name, _)| !self.names.contains_key(*name));
+        let undefined: Vec<(String, Place)> =
+            named.chain(parts).map(|(name, place)| (name.clone(), place.clone())).collect();
+        for (name, place) in undefined {
+            let warning = self.undefined(&name);
             self.builder.warn(&place, warning);
+        }
+
+        let inside: Vec<Vec<usize>> = (0..self.slots.len())
+            .map(|slot| {
+                let parts = self.parts(slot).into_iter();
+                parts.filter_map(|(name, _)| self.names.get(name).copied()).collect()
+            })
+            .collect();
+        if let Some(circle) = circle(0..inside.len(), |slot| inside[slot].clone()) {
+            let definitions = circle.iter().chain(&circle[..1]);
+            let definitions: Vec<&Definition> =
+                definitions.filter_map(|&slot| self.slots[slot].definition.as_ref()).collect();
+            let names: Vec<&str> = definitions.iter().map(|d| &d.name[..]).collect();
+            let warning = format!(
+                "mixtures are made of each other in a circle: {}; take one out of another",
+                names.join(" -> ")
+            );
+            self.builder.warn(&definitions[0].place, warning);
+        }
+        let mut pending: Vec<usize> =
+            (0..inside.len()).filter(|&slot| self.slots[slot].used).collect();
+        while let Some(slot) = pending.pop() {
+            for &part in &inside[slot] {
+                if !std::mem::replace(&mut self.slots[part].used, true) {
+                    pending.push(part);
+                }
+            }
         }
     }
 
@@ -31,63 +62,13 @@ impl Reader {
         format!("material \"{name}\" is not defined{hint}; what uses it is left out")
     }
 
-    /// Marks the parts of used mixtures as used; warns of those that nothing defines, and of
-    /// mixtures that are parts of themselves.
-    pub(super) fn use_parts_of_mixtures(&mut self) {
-        let is_mixture = |slot: &Slot| slot.definition.as_ref().is_some_and(|d| d.class == "mix");
-        let mut pending: Vec<usize> =
-            (0..self.slots.len()).filter(|&i| is_mixture(&self.slots[i])).collect();
-        for &slot in &pending {
-            for (name, place) in self.parts(slot) {
-                // One that a NamedMaterial refers to is warned of there.
-                if !self.names.contains_key(&name) {
-                    let warning = self.undefined(&name);
-                    self.builder.warn(&place, warning);
-                }
-            }
-        }
-        let inside = |slot: usize| {
-            let parts = self.parts(slot).into_iter();
-            parts.filter_map(|(name, _)| self.names.get(&name).copied()).collect()
-        };
-        if let Some(circle) = cycle::find(pending.iter().copied(), inside) {
-            let definitions = circle.iter().chain(&circle[..1]);
-            let definitions: Vec<&Definition> =
-                definitions.filter_map(|&slot| self.slots[slot].definition.as_ref()).collect();
-            let names: Vec<&str> = definitions.iter().map(|d| &d.name[..]).collect();
-            let warning = format!(
-                "mixtures are made of each other in a circle: {}; take one out of another",
-                names.join(" -> ")
-            );
-            self.builder.warn(&definitions[0].place, warning);
-        }
-        pending.retain(|&slot| self.slots[slot].used);
-        while let Some(slot) = pending.pop() {
-            for (name, _) in self.parts(slot) {
-                let Some(&part) = self.names.get(&name) else {
-                    continue;
-                };
-                if !std::mem::replace(&mut self.slots[part].used, true)
-                    && is_mixture(&self.slots[part])
-                {
-                    pending.push(part);
-                }
-            }
-        }
-    }
-
-    /// The names of the materials in a mixture.
-    fn parts(&self, slot: usize) -> Vec<(String, Place)> {
+    /// The names of the materials in a mixture; none of what is no mixture.
+    fn parts(&self, slot: usize) -> Vec<(&String, &Place)> {
         let definition = self.slots[slot].definition.as_ref();
-        let Some(mixture) = definition.filter(|definition| definition.class == "mix") else {
-            return Vec::new();
-        };
+        let mixture = definition.filter(|definition| definition.class == "mix");
         // pbrt-v3 names each of them by a parameter of its own.
         let lists = ["materials", "namedmaterial1", "namedmaterial2"];
-        let lists = lists.iter().filter_map(|list| mixture.parameter(list));
-        let names = |p: &Parameter| {
-            p.values.iter().map(|name| (name.clone(), p.place.clone())).collect::<Vec<_>>()
-        };
-        lists.flat_map(names).collect()
+        let lists = lists.iter().filter_map(|list| mixture?.parameter(list));
+        lists.flat_map(|list| list.values.iter().map(|name| (name, &list.place))).collect()
     }
 }

@@ -1,21 +1,20 @@
 //! The ranges of pbrt's float textures.
 
-use microfacet_baker::scene::SceneError;
 use microfacet_tables::Interval;
 
 use super::Reader;
-use super::definition::Definition;
-use super::syntax::Parameter;
+use super::definition::{Definition, Parameter};
+use crate::Result;
 use crate::texture::{Channel, Encoding};
 
 impl Reader {
     /// A parameter that is a number or a texture.
-    pub(super) fn value(&mut self, parameter: &Parameter) -> Result<Interval, SceneError> {
+    pub(super) fn value(&mut self, parameter: &Parameter) -> Result<Interval> {
         if parameter.kind != "texture" {
             return parameter.number().map(Interval::point);
         }
         let place = &parameter.place;
-        let name = parameter.values.first().map_or("", |value| value);
+        let name = parameter.first();
         if let Some(texture) = self.textures.get(name).cloned() {
             if let Some(known) = self.ranges.begin(texture.name.clone(), place)? {
                 return Ok(known);
@@ -33,7 +32,7 @@ impl Reader {
         Err(place.invalid(format!("float texture \"{name}\" is not defined{hint}")))
     }
 
-    fn texture(&mut self, texture: &Definition) -> Result<Interval, SceneError> {
+    fn texture(&mut self, texture: &Definition) -> Result<Interval> {
         let mut input = |name: &str, default: f64| match texture.parameter(name) {
             Some(parameter) => self.value(parameter),
             None => Ok(Interval::point(default)),
@@ -65,13 +64,13 @@ impl Reader {
 
     /// The values of an image, of which pbrt's filters read different channels.
     fn image(&mut self, texture: &Definition) -> Interval {
-        let text = |name| texture.parameter(name).and_then(|p| p.values.first());
+        let text = |name| texture.parameter(name).map(Parameter::first);
         let Some(file) = text("filename") else {
             let name = format!("\"{}\"", texture.name);
             return self.builder.unread(&name, "names no file", &texture.place);
         };
         let is_png = file.to_ascii_lowercase().ends_with(".png");
-        let encoding = match text("encoding").map(|text| &text[..]) {
+        let encoding = match text("encoding") {
             // pbrt takes other integers for sRGB, whatever is said of them.
             _ if !is_png => Encoding::Srgb,
             Some("linear") => Encoding::Linear,
@@ -83,7 +82,7 @@ impl Reader {
         };
         let file = self.folder.join(file);
         let mut of = |channel| self.builder.image(&file, channel, encoding, &texture.place);
-        match text("filter").map_or("bilinear", |text| text) {
+        match text("filter").unwrap_or("bilinear") {
             "point" => of(Channel::Red),
             "bilinear" | "trilinear" => of(Channel::AlphaOrMean),
             // EWA, also in place of a filter that pbrt does not know: single pixels, or between
