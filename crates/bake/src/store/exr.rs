@@ -25,6 +25,9 @@ const ATTRIBUTE: &str = "microfacet";
 /// How pixels are stored; nothing else is read.
 const ENCODING: Encoding = Encoding::SMALL_LOSSLESS;
 
+/// A result with a message.
+type Outcome<T> = std::result::Result<T, String>;
+
 /// A part of an image.
 type Part = Layer<AnyChannels<FlatSamples>>;
 
@@ -38,7 +41,7 @@ fn channel_name(channel: &str) -> &str {
 ///
 /// # Errors
 /// A message if there are no tables, or one is invalid or cannot be written.
-pub fn encode(provenance: &Provenance, tables: &[Table]) -> std::result::Result<Vec<u8>, String> {
+pub fn encode(provenance: &Provenance, tables: &[Table]) -> Outcome<Vec<u8>> {
     let document = describe(provenance, tables).map_err(|why| why.to_string())?;
     let values = tables.iter().flat_map(|table| &table.values);
     let document = seal_document(&ascii(&document), values)
@@ -80,7 +83,7 @@ pub fn encode_channels(
     channels: impl IntoIterator<Item = (&'static str, Vec<f32>)>,
     half: bool,
     description: Option<&str>,
-) -> std::result::Result<Vec<u8>, String> {
+) -> Outcome<Vec<u8>> {
     let channels = channels
         .into_iter()
         .map(|(channel, samples)| channel_of(channel, flat(half, samples.into_iter())))
@@ -105,7 +108,7 @@ fn named(name: &str) -> LayerAttributes {
     LayerAttributes::named(Text::new_or_panic(ascii(name)))
 }
 
-fn describe_with(attributes: &mut LayerAttributes, text: &str) -> std::result::Result<(), String> {
+fn describe_with(attributes: &mut LayerAttributes, text: &str) -> Outcome<()> {
     let text = Text::new_or_none(text).ok_or("the description cannot be stored in EXR")?;
     // Only one custom attribute: the library writes them in the order of a hash map.
     attributes.other.insert(Text::new_or_panic(ATTRIBUTE), AttributeValue::Text(text));
@@ -123,7 +126,7 @@ fn channel_of(name: &str, samples: FlatSamples) -> AnyChannel<FlatSamples> {
 }
 
 /// The bytes of an image; all parts share a display window, which is the largest of them.
-fn write(parts: Vec<Part>) -> std::result::Result<Vec<u8>, String> {
+fn write(parts: Vec<Part>) -> Outcome<Vec<u8>> {
     let largest = |side: fn(&Part) -> usize| parts.iter().map(side).max().unwrap_or_default();
     let window = (largest(|part| part.size.width()), largest(|part| part.size.height()));
     let attributes = ImageAttributes::new(IntegerBounds::from_dimensions(window));
@@ -179,7 +182,7 @@ pub fn decode(bytes: &[u8]) -> std::result::Result<Tables, LoadError> {
 }
 
 /// The values of a table, channels fastest.
-fn values(name: &str, channels: &[String], part: &Part) -> std::result::Result<Vec<f32>, String> {
+fn values(name: &str, channels: &[String], part: &Part) -> Outcome<Vec<f32>> {
     let of = part.attributes.layer_name.as_ref().map(Text::to_string).unwrap_or_default();
     if of != ascii(name) {
         return Err(format!("OpenEXR: a part named `{of}` in the place of the table `{name}`"));
@@ -207,7 +210,7 @@ fn values(name: &str, channels: &[String], part: &Part) -> std::result::Result<V
 const MAX_SAMPLES: u64 = MAX_TABLES / 4;
 
 /// Refuses an image that would take too much memory to read.
-fn check_samples(bytes: u64) -> std::result::Result<(), String> {
+fn check_samples(bytes: u64) -> Outcome<()> {
     if bytes <= MAX_SAMPLES {
         return Ok(());
     }
@@ -223,7 +226,7 @@ const EXPANSION: usize = 64;
 
 /// Refuses what [`encode`] does not write, before any pixel is decoded, and what declares more
 /// pixels than the file can hold, before the library allocates them.
-fn check_header(bytes: &[u8]) -> std::result::Result<(), String> {
+fn check_header(bytes: &[u8]) -> Outcome<()> {
     let meta =
         MetaData::read_from_buffered(bytes, false).map_err(|why| format!("OpenEXR: {why}"))?;
     let mut all = 0_usize;
@@ -245,7 +248,7 @@ fn check_header(bytes: &[u8]) -> std::result::Result<(), String> {
 
 /// No table needs decoders of other compressions, and on hostile blocks that of B44 overflows
 /// (`exr` 1.74.2, `unpack14`).
-fn check_encoding(header: &Header) -> std::result::Result<(), String> {
+fn check_encoding(header: &Header) -> Outcome<()> {
     let known = |channel: &ChannelDescription| {
         channel.sample_type != SampleType::U32 && channel.sampling == Vec2(1, 1)
     };

@@ -20,7 +20,7 @@ use super::{Format, NAMES, StoreError, Written, bytes_of, image_of, numbered};
 pub struct OutputFolder {
     path: PathBuf,
     /// Folders that did not exist before, the innermost first.
-    made: Leftovers,
+    _made: Leftovers,
     /// Whether something new is in the folder.
     written: Arc<AtomicBool>,
 }
@@ -32,9 +32,9 @@ impl OutputFolder {
     /// [`StoreError::Io`] if the path is no folder or cannot be written to.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
         let missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
-        let made = path.ancestors().take_while(missing).map(Path::to_path_buf);
-        let made = Leftovers::folders(made.collect());
-        let this = Self { path: path.into(), made, written: Arc::default() };
+        let made = path.ancestors().take_while(missing).map(Path::to_path_buf).collect();
+        let _made = Leftovers::folders(made);
+        let this = Self { path: path.into(), _made, written: Arc::default() };
         let failed = |why| StoreError::Io(path.into(), why);
         // Fail now rather than after an hour of work.
         in_folder(path, || tempfile::tempfile_in(path)).map_err(failed)?;
@@ -128,12 +128,6 @@ impl OutputFolder {
         // While the write is marked: an interrupt sees both or neither.
         self.written.store(true, Relaxed);
         old.remove(&self.path, &new)
-    }
-}
-
-impl Drop for OutputFolder {
-    fn drop(&mut self) {
-        self.made.remove_empty();
     }
 }
 

@@ -21,7 +21,8 @@ fn leftovers() -> MutexGuard<'static, Vec<PathBuf>> {
     LEFTOVERS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What an interrupt removes as long as this lives: files, and folders if they are empty.
+/// What an interrupt removes as long as this lives: files, and folders if they are empty, which go
+/// on drop as well.
 #[derive(Debug)]
 pub(super) struct Leftovers(Vec<PathBuf>);
 
@@ -42,22 +43,18 @@ impl Leftovers {
         leftovers().extend_from_slice(&folders);
         Self(folders)
     }
-
-    /// Removes its folders as far as they are empty.
-    pub(super) fn remove_empty(&self) {
-        remove_empty(&self.0);
-    }
 }
 
-fn remove_empty(folders: &[PathBuf]) {
-    for folder in folders {
-        // A folder with any content cannot be removed, and stays.
-        let _ = fs::remove_dir(folder);
+fn remove_empty(all: &[PathBuf]) {
+    for path in all {
+        // A folder with any content cannot be removed and stays, as does a file.
+        let _ = fs::remove_dir(path);
     }
 }
 
 impl Drop for Leftovers {
     fn drop(&mut self) {
+        remove_empty(&self.0);
         leftovers().retain(|path| !self.0.contains(path));
     }
 }
