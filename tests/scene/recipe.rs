@@ -15,6 +15,26 @@ fn entry(rest: &str) -> String {
     format!("[[material]]\nname = \"a\"\n{rest}\n")
 }
 
+/// The only material of a recipe.
+fn material_of(rest: &str) -> Material {
+    load("r.toml", &entry(rest)).materials.remove(0)
+}
+
+/// Checks that a material is refused with a message that holds `words`.
+#[track_caller]
+fn refuse(rest: &str, words: &str) {
+    let message = Scene::from_recipe_str(&entry(rest)).unwrap_err().to_string();
+    assert!(message.contains(words), "no {words:?} in {message}");
+}
+
+/// Checks that what is written of a scene reads back to its material.
+#[track_caller]
+fn reads_back(scene: &Scene) {
+    let written = scene.to_recipe();
+    let again = Scene::from_recipe_str(&written).unwrap();
+    assert!(again.materials[0].asks_the_same(&scene.materials[0]), "{written}");
+}
+
 #[test]
 fn every_form_of_value_is_read() {
     let (eta, k) = ([0.2, 0.9, 1.1], [0.0, 2.4, 2.2]);
@@ -65,8 +85,7 @@ fn every_form_of_value_is_read() {
 #[test]
 fn a_metal_by_name_is_the_conductor_of_its_index() {
     let fresnel = |metal: &str| {
-        let recipe = entry(&format!("sigma = 0.3\ngamma = 2.0\nfresnel = {{ metal = {metal} }}"));
-        load("r.toml", &recipe).materials[0].fresnel
+        material_of(&format!("sigma = 0.3\ngamma = 2.0\nfresnel = {{ metal = {metal} }}")).fresnel
     };
     for metal in Metal::ALL {
         let (eta, k) = (metal.eta(), metal.k());
@@ -92,10 +111,7 @@ fn schlick_has_one_number_or_three() {
 
 #[test]
 fn equal_axes_are_isotropic_and_equal_ranges_are_not() {
-    let sigma = |text: &str| {
-        let recipe = entry(&format!("sigma = {text}\ngamma = 2.0"));
-        load("r.toml", &recipe).materials[0].lobe.roughness
-    };
+    let sigma = |text: &str| material_of(&format!("sigma = {text}\ngamma = 2.0")).lobe.roughness;
     assert_eq!(sigma("[0.2, 0.2]"), isotropic(0.2));
     assert_eq!(sigma("[0, 0]"), Roughness::Smooth);
     // Both axes cover the range, but not together.
@@ -175,18 +191,14 @@ fn names_of_other_programs_lead_to_sigma() {
 }
 
 #[test]
-fn infinity_is_written_as_rust_and_people_do() {
+fn infinity_may_be_in_quotes_and_in_full() {
     for text in ["inf", "+inf", "\"inf\"", "\"Inf\"", "\"INFINITY\"", "\"Infinity\"", "\" inf \""] {
-        let scene = load("r.toml", &entry(&format!("sigma = 0.3\ngamma = {text}")));
-        assert_eq!(scene.materials[0].lobe.gamma, Interval::point(f64::INFINITY), "{text}");
+        let gamma = material_of(&format!("sigma = 0.3\ngamma = {text}")).lobe.gamma;
+        assert_eq!(gamma, Interval::point(f64::INFINITY), "{text}");
     }
     for text in ["\"-inf\"", "\"nan\"", "\"3\"", "\"infinite\"", "\"\""] {
-        assert_refused(
-            "r.toml",
-            &entry(&format!("sigma = 0.3\ngamma = {text}")),
-            ":4:9",
-            &["gamma"],
-        );
+        let recipe = entry(&format!("sigma = 0.3\ngamma = {text}"));
+        assert_refused("r.toml", &recipe, ":4:9", &["gamma"]);
     }
 }
 
@@ -231,26 +243,18 @@ fn ellipsoids_have_a_turn_and_single_numbers() {
     let tilted = "sigma = [0.3, 0.1]\ngamma = 2.7\ntheta = [0.1, -0.2, 0.5]";
     let scene = load("r.toml", &entry(tilted));
     assert_eq!(scene.materials[0].lobe.theta, Some([0.1, -0.2, 0.5]));
-    let again = Scene::from_recipe_str(&scene.to_recipe()).unwrap();
-    assert!(again.materials[0].asks_the_same(&scene.materials[0]), "{}", scene.to_recipe());
-    for (text, words) in [
-        ("sigma = 0.3\ngamma = 2.0\ntheta = [0.1, 0.2]", "three angles"),
-        ("sigma = 0.3\ngamma = 2.0\ntheta = 0.1", "three angles"),
-        ("sigma = 0.3\ngamma = 2.0\ntheta = [0.1, \"inf\", 0.0]", "finite"),
-        (
-            "sigma = 0.3\ngamma = { min = 2.0, max = 3.0 }\ntheta = [0.1, 0.2, 0.0]",
-            "range of gamma",
-        ),
-        (
-            "sigma = { min = 0.1, max = 0.3 }\ngamma = 2.0\ntheta = [0.1, 0.2, 0.0]",
-            "range of sigma",
-        ),
-        ("sigma = 0\ngamma = 2.0\ntheta = [0.1, 0.2, 0.0]", "sigma"),
-        ("sigma = 1e-9\ngamma = 2.0\ntheta = [0.0, 1.5707963267948966, 0.0]", "theta"),
-        ("distribution = \"gauss\"\nm = 0.2\ntheta = [0.1, 0.2, 0.0]", "unknown key `theta`"),
+    reads_back(&scene);
+    for (lobe, theta, words) in [
+        ("sigma = 0.3\ngamma = 2.0", "[0.1, 0.2]", "three angles"),
+        ("sigma = 0.3\ngamma = 2.0", "0.1", "three angles"),
+        ("sigma = 0.3\ngamma = 2.0", "[0.1, \"inf\", 0.0]", "finite"),
+        ("sigma = 0.3\ngamma = { min = 2.0, max = 3.0 }", "[0.1, 0.2, 0.0]", "range of gamma"),
+        ("sigma = { min = 0.1, max = 0.3 }\ngamma = 2.0", "[0.1, 0.2, 0.0]", "range of sigma"),
+        ("sigma = 0\ngamma = 2.0", "[0.1, 0.2, 0.0]", "sigma"),
+        ("sigma = 1e-9\ngamma = 2.0", "[0.0, 1.5707963267948966, 0.0]", "theta"),
+        ("distribution = \"gauss\"\nm = 0.2", "[0.1, 0.2, 0.0]", "unknown key `theta`"),
     ] {
-        let message = Scene::from_recipe_str(&entry(text)).unwrap_err().to_string();
-        assert!(message.contains(words), "no {words:?} in {message}");
+        refuse(&format!("{lobe}\ntheta = {theta}"), words);
     }
 }
 
@@ -263,19 +267,13 @@ fn angles_may_be_in_degrees_and_are_written_in_radians() {
     assert_eq!(scene.warnings, [""; 0]);
     let written = scene.to_recipe();
     assert!(written.contains(&format!("theta = {theta:?}")) && !written.contains("degrees"));
-    let again = Scene::from_recipe_str(&written).unwrap();
-    assert!(again.materials[0].asks_the_same(&scene.materials[0]), "{written}");
+    reads_back(&scene);
 
     let radians =
         degrees.replace("true", "false").replace("450", "0.5").replace("10, -20.0", "1, -1");
-    assert_eq!(load("r.toml", &entry(&radians)).materials[0].lobe.theta, Some([1.0, -1.0, 0.5]));
-    for (text, words) in [
-        (degrees.replace("true", "\"yes\""), "degrees must be true"),
-        ("sigma = 0.3\ngamma = 2.0\ndegrees = true".to_owned(), "no `theta`"),
-    ] {
-        let message = Scene::from_recipe_str(&entry(&text)).unwrap_err().to_string();
-        assert!(message.contains(words), "no {words:?} in {message}");
-    }
+    assert_eq!(material_of(&radians).lobe.theta, Some([1.0, -1.0, 0.5]));
+    refuse(&degrees.replace("true", "\"yes\""), "degrees must be true");
+    refuse("sigma = 0.3\ngamma = 2.0\ndegrees = true", "no `theta`");
 }
 
 #[test]

@@ -154,17 +154,26 @@ impl DistributionKind {
 
     /// The name in recipes and on the command line.
     pub const fn name(self) -> &'static str {
+        self.words().0
+    }
+
+    /// Names of its parameters.
+    pub const fn parameters(self) -> &'static [&'static str] {
+        self.words().1
+    }
+
+    const fn words(self) -> (&'static str, &'static [&'static str]) {
         match self {
-            Self::Beckmann => "beckmann",
-            Self::Gauss => "gauss",
-            Self::TrowbridgeReitz => "trowbridge-reitz",
-            Self::Gtr => "gtr",
-            Self::BlinnPhong => "blinn-phong",
-            Self::Schlick => "schlick",
-            Self::Sawicki => "sawicki",
-            Self::StudentT => "student-t",
-            Self::HyperCauchy => "hyper-cauchy",
-            Self::AshikhminShirley => "ashikhmin-shirley",
+            Self::Beckmann => ("beckmann", &["m"]),
+            Self::Gauss => ("gauss", &["m"]),
+            Self::TrowbridgeReitz => ("trowbridge-reitz", &["c"]),
+            Self::Gtr => ("gtr", &["c", "gamma"]),
+            Self::BlinnPhong => ("blinn-phong", &["n"]),
+            Self::Schlick => ("schlick", &["m"]),
+            Self::Sawicki => ("sawicki", &["n"]),
+            Self::StudentT => ("student-t", &["sigma", "gamma"]),
+            Self::HyperCauchy => ("hyper-cauchy", &["sigma0", "gamma"]),
+            Self::AshikhminShirley => ("ashikhmin-shirley", &["nx", "ny"]),
         }
     }
 
@@ -180,19 +189,6 @@ impl DistributionKind {
         };
         let found = Self::ALL.into_iter().find(|kind| kind.name() == known);
         found.ok_or_else(|| DistributionError::Unknown(name.into()))
-    }
-
-    /// Names of its parameters.
-    pub const fn parameters(self) -> &'static [&'static str] {
-        match self {
-            Self::Beckmann | Self::Gauss | Self::Schlick => &["m"],
-            Self::TrowbridgeReitz => &["c"],
-            Self::Gtr => &["c", "gamma"],
-            Self::BlinnPhong | Self::Sawicki => &["n"],
-            Self::StudentT => &["sigma", "gamma"],
-            Self::HyperCauchy => &["sigma0", "gamma"],
-            Self::AshikhminShirley => &["nx", "ny"],
-        }
     }
 
     /// Builds the distribution with these parameters.

@@ -119,34 +119,15 @@ pub fn general_set(level: impl Into<Level>, precision: Precision) -> Vec<TableSp
     };
     // Shapes crowd: G1 changes with the logarithm of 2 − s next to γ = 3/2, and the slopes of
     // grazing views next to the seam, where even nodes in s leave most of the error.
+    let (range, crowded) = (ShapeAxis::range, ShapeAxis::crowded);
+    let peeled = crowded(whole, heaviest, r.shadowing_shapes, 2.0);
+    let peeled = spec(Kind::Shadowing, peeled, r.peeled_shadowing_views, 0);
+    let across = range(0.0, heaviest, r.across_shapes);
     vec![
-        spec(
-            Kind::Shadowing,
-            ShapeAxis::range(0.0, whole, r.shadowing_shapes),
-            r.shadowing_views,
-            0,
-        ),
-        TableSpec {
-            name: "shadowing_peeled".into(),
-            ..spec(
-                Kind::Shadowing,
-                ShapeAxis::crowded(whole, heaviest, r.shadowing_shapes, 2.0),
-                r.peeled_shadowing_views,
-                0,
-            )
-        },
-        spec(Kind::VisibleSlope, ShapeAxis::crowded(0.0, whole, r.shapes, 0.0), r.views, r.numbers),
-        spec(
-            Kind::VisibleSlopePeeled,
-            ShapeAxis::range(whole, heaviest, r.peeled_shapes),
-            r.views,
-            r.numbers,
-        ),
-        spec(
-            Kind::VisibleSlopeConditional,
-            ShapeAxis::range(0.0, heaviest, r.across_shapes),
-            0,
-            r.across_numbers,
-        ),
+        spec(Kind::Shadowing, range(0.0, whole, r.shadowing_shapes), r.shadowing_views, 0),
+        TableSpec { name: "shadowing_peeled".into(), ..peeled },
+        spec(Kind::VisibleSlope, crowded(0.0, whole, r.shapes, 0.0), r.views, r.numbers),
+        spec(Kind::VisibleSlopePeeled, range(whole, heaviest, r.peeled_shapes), r.views, r.numbers),
+        spec(Kind::VisibleSlopeConditional, across, 0, r.across_numbers),
     ]
 }

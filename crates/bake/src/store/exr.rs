@@ -6,6 +6,7 @@
 //! part holds the description of the set.
 
 use std::io::Cursor;
+use std::result::Result;
 
 use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
@@ -25,9 +26,6 @@ const ATTRIBUTE: &str = "microfacet";
 /// How pixels are stored; nothing else is read.
 const ENCODING: Encoding = Encoding::SMALL_LOSSLESS;
 
-/// A result with a message.
-type Outcome<T> = std::result::Result<T, String>;
-
 /// A part of an image.
 type Part = Layer<AnyChannels<FlatSamples>>;
 
@@ -41,7 +39,7 @@ fn channel_name(channel: &str) -> &str {
 ///
 /// # Errors
 /// A message if there are no tables, or one is invalid or cannot be written.
-pub fn encode(provenance: &Provenance, tables: &[Table]) -> Outcome<Vec<u8>> {
+pub fn encode(provenance: &Provenance, tables: &[Table]) -> Result<Vec<u8>, String> {
     let document = describe(provenance, tables).map_err(|why| why.to_string())?;
     let values = tables.iter().flat_map(|table| &table.values);
     let document = seal_document(&ascii(&document), values)
@@ -83,7 +81,7 @@ pub fn encode_channels(
     channels: impl IntoIterator<Item = (&'static str, Vec<f32>)>,
     half: bool,
     description: Option<&str>,
-) -> Outcome<Vec<u8>> {
+) -> Result<Vec<u8>, String> {
     let channels = channels
         .into_iter()
         .map(|(channel, samples)| channel_of(channel, flat(half, samples.into_iter())))
@@ -108,7 +106,7 @@ fn named(name: &str) -> LayerAttributes {
     LayerAttributes::named(Text::new_or_panic(ascii(name)))
 }
 
-fn describe_with(attributes: &mut LayerAttributes, text: &str) -> Outcome<()> {
+fn describe_with(attributes: &mut LayerAttributes, text: &str) -> Result<(), String> {
     let text = Text::new_or_none(text).ok_or("the description cannot be stored in EXR")?;
     // Only one custom attribute: the library writes them in the order of a hash map.
     attributes.other.insert(Text::new_or_panic(ATTRIBUTE), AttributeValue::Text(text));
@@ -126,7 +124,7 @@ fn channel_of(name: &str, samples: FlatSamples) -> AnyChannel<FlatSamples> {
 }
 
 /// The bytes of an image; all parts share a display window, which is the largest of them.
-fn write(parts: Vec<Part>) -> Outcome<Vec<u8>> {
+fn write(parts: Vec<Part>) -> Result<Vec<u8>, String> {
     let largest = |side: fn(&Part) -> usize| parts.iter().map(side).max().unwrap_or_default();
     let window = (largest(|part| part.size.width()), largest(|part| part.size.height()));
     let attributes = ImageAttributes::new(IntegerBounds::from_dimensions(window));
@@ -143,7 +141,7 @@ fn write(parts: Vec<Part>) -> Outcome<Vec<u8>> {
 ///
 /// # Errors
 /// [`LoadError`] for an image that is damaged or was not written by [`encode`].
-pub fn decode(bytes: &[u8]) -> std::result::Result<Tables, LoadError> {
+pub fn decode(bytes: &[u8]) -> Result<Tables, LoadError> {
     let invalid = |why: String| LoadError::Invalid(why);
     check_header(bytes).map_err(invalid)?;
     let image = read()
@@ -168,7 +166,7 @@ pub fn decode(bytes: &[u8]) -> std::result::Result<Tables, LoadError> {
         .iter()
         .zip(&parts)
         .map(|((name, channels), part)| values(name, channels, part))
-        .collect::<std::result::Result<_, _>>()
+        .collect::<Result<_, _>>()
         .map_err(invalid)?;
     if seal_document(&document, values.iter().flatten()).is_none_or(|sealed| sealed != document) {
         return Err(invalid(
@@ -182,7 +180,7 @@ pub fn decode(bytes: &[u8]) -> std::result::Result<Tables, LoadError> {
 }
 
 /// The values of a table, channels fastest.
-fn values(name: &str, channels: &[String], part: &Part) -> Outcome<Vec<f32>> {
+fn values(name: &str, channels: &[String], part: &Part) -> Result<Vec<f32>, String> {
     let of = part.attributes.layer_name.as_ref().map(Text::to_string).unwrap_or_default();
     if of != ascii(name) {
         return Err(format!("OpenEXR: a part named `{of}` in the place of the table `{name}`"));
@@ -210,7 +208,7 @@ fn values(name: &str, channels: &[String], part: &Part) -> Outcome<Vec<f32>> {
 const MAX_SAMPLES: u64 = MAX_TABLES / 4;
 
 /// Refuses an image that would take too much memory to read.
-fn check_samples(bytes: u64) -> Outcome<()> {
+fn check_samples(bytes: u64) -> Result<(), String> {
     if bytes <= MAX_SAMPLES {
         return Ok(());
     }
@@ -226,7 +224,7 @@ const EXPANSION: usize = 64;
 
 /// Refuses what [`encode`] does not write, before any pixel is decoded, and what declares more
 /// pixels than the file can hold, before the library allocates them.
-fn check_header(bytes: &[u8]) -> Outcome<()> {
+fn check_header(bytes: &[u8]) -> Result<(), String> {
     let meta =
         MetaData::read_from_buffered(bytes, false).map_err(|why| format!("OpenEXR: {why}"))?;
     let mut all = 0_usize;
@@ -248,7 +246,7 @@ fn check_header(bytes: &[u8]) -> Outcome<()> {
 
 /// No table needs decoders of other compressions, and on hostile blocks that of B44 overflows
 /// (`exr` 1.74.2, `unpack14`).
-fn check_encoding(header: &Header) -> Outcome<()> {
+fn check_encoding(header: &Header) -> Result<(), String> {
     let known = |channel: &ChannelDescription| {
         channel.sample_type != SampleType::U32 && channel.sampling == Vec2(1, 1)
     };

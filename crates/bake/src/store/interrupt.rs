@@ -27,21 +27,27 @@ fn leftovers() -> MutexGuard<'static, Vec<PathBuf>> {
 pub(super) struct Leftovers(Vec<PathBuf>);
 
 impl Leftovers {
-    /// Makes a file, which is listed before an interrupt can see it.
-    pub(super) fn file(
-        make: impl FnOnce() -> io::Result<NamedTempFile>,
-    ) -> io::Result<(NamedTempFile, Self)> {
-        let mut all = leftovers();
-        let file = make()?;
-        all.push(file.path().into());
-        let this = Self(vec![file.path().into()]);
-        Ok((file, this))
-    }
-
     /// Folders that are about to be made, the innermost first.
     pub(super) fn folders(folders: Vec<PathBuf>) -> Self {
         leftovers().extend_from_slice(&folders);
         Self(folders)
+    }
+}
+
+/// A file under a temporary name.
+#[derive(Debug)]
+pub(super) struct Partial {
+    pub(super) file: NamedTempFile,
+    _leftovers: Leftovers,
+}
+
+impl Partial {
+    /// Makes a file, which is listed before an interrupt can see it.
+    pub(super) fn new(make: impl FnOnce() -> io::Result<NamedTempFile>) -> io::Result<Self> {
+        let mut all = leftovers();
+        let file = make()?;
+        all.push(file.path().into());
+        Ok(Self { _leftovers: Leftovers(vec![file.path().into()]), file })
     }
 }
 

@@ -9,9 +9,7 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use tempfile::NamedTempFile;
-
-use super::interrupt::{self, Leftovers};
+use super::interrupt::{self, Partial};
 use super::{StoreError, Written};
 use crate::input;
 
@@ -141,7 +139,7 @@ impl Destination {
 
     /// A complete temporary file beside it, synchronised to disk, with the rights of the old file,
     /// or those that any new file gets.
-    fn stage(&self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<Staged> {
+    fn stage(&self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<Partial> {
         let mut builder = tempfile::Builder::new();
         builder.prefix(PREFIX).suffix(SUFFIX);
         #[cfg(unix)]
@@ -151,12 +149,10 @@ impl Destination {
         }
         let folder = folder_of(&self.path);
         // Without the temporary name, of which a user knows nothing.
-        let (file, _leftovers) =
-            Leftovers::file(|| builder.tempfile_in(folder)).map_err(|why| {
-                let (folder, kind) = (folder.display(), why.kind());
-                io::Error::new(kind, format!("cannot write into the folder {folder}: {kind}"))
-            })?;
-        let mut staged = Staged { file, _leftovers };
+        let mut staged = Partial::new(|| builder.tempfile_in(folder)).map_err(|why| {
+            let (folder, kind) = (folder.display(), why.kind());
+            io::Error::new(kind, format!("cannot write into the folder {folder}: {kind}"))
+        })?;
         write(staged.file.as_file_mut())?;
         #[cfg(unix)]
         if let Some(old) = &self.old {
@@ -175,18 +171,11 @@ impl Destination {
     }
 }
 
-/// A temporary file that an interrupt removes.
-#[derive(Debug)]
-struct Staged {
-    file: NamedTempFile,
-    _leftovers: Leftovers,
-}
-
 /// New files, complete under temporary names, that take their places one right after the other.
 #[derive(Debug, Default)]
 pub(super) struct Replacement {
     /// Where they go, and where that leads; devices have their bytes already.
-    all: Vec<(PathBuf, Option<(Staged, PathBuf)>)>,
+    all: Vec<(PathBuf, Option<(Partial, PathBuf)>)>,
     /// Where they lead with links resolved, to the paths that were named.
     places: HashMap<PathBuf, PathBuf>,
 }
