@@ -49,50 +49,30 @@ pub(crate) fn figures(set: &Tables, sweep: &[Summary], settings: &Settings) -> V
     let drop = |what| times.worst(what, peeled) / times.median(what, whole);
     let by_caps = |what, layout: usize| times.worst(what, whole) / times.caps[layout];
     let ggx = |layout: usize| times.ggx[layout] / times.caps[layout];
+    let ratio = |name, must, aim, reached| Figure::ratio(name, must, aim, Some(reached));
+    let components = by_caps(SampleOfComponents, 1);
+    let [ends, down] = [BatchOfEnds, BatchDown].map(|what| times.ratio(what, Batch));
+    let bounded = times.ratio(Bounded, Sample);
     let by_hand = times.worst(Conductor, whole) / times.by_hand;
     let density = times.worst(TableDensity, all) / times.median(Density, all);
-    let ratio = |name, must, aim, reached| Figure::ratio(name, must, aim, Some(reached));
+    let (must, aim) = (CONDUCTOR_MUST, CONDUCTOR_AIM);
+    let [g1, sample] = ["Ellipsoid::g1", "Ellipsoid::sample_visible_normal"].map(cliff);
     vec![
         ratio("Ggx sample / caps as listed", 1.0, 0.9, ggx(0)),
         ratio("Ggx sample / caps, views by component", 1.0, 0.9, ggx(1)),
         ratio("sample, worst gamma >= 1.8 / caps as listed", 1.25, 1.0, by_caps(Sample, 0)),
-        ratio(
-            "sample, gamma >= 1.8 / caps, views by component",
-            1.25,
-            1.0,
-            by_caps(SampleOfComponents, 1),
-        ),
+        ratio("sample, gamma >= 1.8 / caps, views by component", 1.25, 1.0, components),
         ratio("sample, worst gamma < 1.8 / gamma >= 1.8", 2.0, 1.3, drop(Sample)),
         ratio("sample_batch, worst gamma < 1.8 / gamma >= 1.8", 3.0, 1.5, drop(Batch)),
-        ratio(
-            "sample_batch, 5 % of u at an end / random",
-            1.3,
-            1.1,
-            times.ratio(BatchOfEnds, Batch),
-        ),
-        ratio(
-            "sample_batch, views straight down / random",
-            1.3,
-            1.1,
-            times.ratio(BatchDown, Batch),
-        ),
-        ratio("bounded, drawn once / sample", 1.6, 1.3, times.ratio(Bounded, Sample)),
+        ratio("sample_batch, 5 % of u at an end / random", 1.3, 1.1, ends),
+        ratio("sample_batch, views straight down / random", 1.3, 1.1, down),
+        ratio("bounded, drawn once / sample", 1.6, 1.3, bounded),
         ratio("bounded, batch / sample_batch", 1.5, 1.5, times.ratio(BoundedBatch, Batch)),
-        ratio(
-            "conductor, worst gamma >= 1.8 / GGX by hand",
-            CONDUCTOR_MUST,
-            CONDUCTOR_AIM,
-            by_hand,
-        ),
+        ratio("conductor, worst gamma >= 1.8 / GGX by hand", must, aim, by_hand),
         ratio("conductor, worst gamma < 1.8 / gamma >= 1.8", 2.0, 1.3, drop(Conductor)),
         ratio("table_pdf, worst gamma / visible_normal_pdf", 4.0, 2.0, density),
-        Figure::ratio("Ellipsoid g1, worst / common case", 4.0, 2.0, cliff("Ellipsoid::g1")),
-        Figure::ratio(
-            "Ellipsoid sample, worst / common case",
-            4.0,
-            2.0,
-            cliff("Ellipsoid::sample_visible_normal"),
-        ),
+        Figure::ratio("Ellipsoid g1, worst / common case", 4.0, 2.0, g1),
+        Figure::ratio("Ellipsoid sample, worst / common case", 4.0, 2.0, sample),
     ]
 }
 

@@ -219,9 +219,8 @@ mod tests {
         let (slices, inputs) = (Slices::bake(), Inputs::new(1, 4096));
         let all = samplers(&slices, 1);
         let variance = |name: &str| {
-            let sampler =
-                all.iter().find(|sampler| sampler.name == name).expect("a name of the list");
-            furnace_variance(sampler, &inputs, 16, 256)
+            let sampler = all.iter().find(|sampler| sampler.name == name);
+            furnace_variance(sampler.expect("a name of the list"), &inputs, 16, 256)
         };
         let (table, inversion) =
             (variance("table, default"), variance("inversion of the CDF, any gamma"));

@@ -61,6 +61,7 @@ pub(crate) fn figures(
         |error: fn(&Approximation) -> f64| approximation.iter().map(error).fold(0.0, f64::max);
     let g1_errors = worst(|at| at.table_error.abs()) / worst(|at| at.rational_error.abs());
     let kibibytes = lobe(slices.default(), GAMMA).bytes() as f64 / 1024.0;
+    let cdf_error = certified(slices.whole());
     // Over shapes between the nodes of the general set.
     let lobe_ns = median_ns(settings, |i| {
         let gamma = black_box(2.1 + 0.37 * (i % 40) as f64);
@@ -78,12 +79,7 @@ pub(crate) fn figures(
         conductor("conductor, exact Fresnel, table / GGX by hand", conductors::EXACT),
         ratio("sample, table / inversion, any gamma", 0.05, 0.025, normals(TABLE, INVERSION)),
         ratio("sample, table / inversion, integer gamma only", 0.05, 0.025, normals(TABLE, sums)),
-        ratio(
-            "CDF error, default tables, gamma >= 1.8",
-            1e-4,
-            2e-5,
-            Some(certified(slices.whole())),
-        ),
+        ratio("CDF error, default tables, gamma >= 1.8", 1e-4, 2e-5, Some(cdf_error)),
         ratio("G1 error, table / rational approximation", 1e-2, 1e-3, Some(g1_errors)),
         Figure { unit: "KiB", ..ratio("tables of a lobe", 32.0, 16.0, Some(kibibytes)) },
         Figure { unit: "us", ..ratio("a lobe from tables", 50.0, 10.0, Some(1e-3 * lobe_ns)) },

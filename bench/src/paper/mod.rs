@@ -5,7 +5,6 @@
 
 mod approximation;
 mod draw;
-mod files;
 mod forms;
 mod integrated;
 mod method;
@@ -15,7 +14,11 @@ mod terminal;
 mod times;
 
 use microfacet_sampler::Tables;
+use serde_json::{Value, json};
 
+use self::integrated::{CLAIM, MEASURES, verdicts};
+use crate::Failure;
+use crate::files::csv;
 use crate::settings::Settings;
 
 pub(crate) use approximation::Approximation;
@@ -40,5 +43,29 @@ impl Paper {
         stage("figure 6: pictures of rough gold");
         let compared = pictures::compared(set, settings);
         Self { times, approximation, integrated, compared }
+    }
+
+    /// Every file by its name.
+    pub(crate) fn files(&self) -> Result<Vec<(&'static str, Vec<u8>)>, Failure> {
+        let measures = MEASURES.map(|measure| measure.column);
+        let columns = [&["gamma", "sigma"][..], &measures].concat();
+        let mut files = vec![
+            ("figure-4.csv", csv(&[], &self.times)?),
+            ("figure-5.csv", csv(&[], &self.approximation)?),
+            ("figure-5-integrated.csv", csv(&columns, &self.integrated)?),
+            ("figure-6.csv", csv(&[], self.compared.iter().flat_map(|of| &of.differences))?),
+        ];
+        files.extend(self.drawings()?);
+        Ok(files)
+    }
+
+    /// The same numbers as JSON, without the errors of single views and materials.
+    pub(crate) fn json(&self) -> Value {
+        let pictures: Vec<_> = self.compared.iter().flat_map(|of| &of.differences).collect();
+        json!({
+            "figure_4": self.times,
+            "figure_5": { "claim": CLAIM, "measures": verdicts(&self.integrated) },
+            "figure_6": pictures,
+        })
     }
 }

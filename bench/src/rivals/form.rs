@@ -19,16 +19,16 @@ pub(crate) trait Area {
     fn area(&self, view: View) -> f32;
 }
 
-/// The functions that the CDFs of visible normals need as well.
+/// What the CDFs of visible normals need as well.
 pub(crate) trait Tails: Area {
+    type Along: Tail;
+    type Across: Tail;
+
     /// cos^(2γ−5), given the cosine and its square.
     fn power(&self, cos: f32, square: f32) -> f32;
 
-    /// The tail along the plane of incidence, p = γ−2, see [`Tail::upper`].
-    fn along(&self, sin: f32, cos: f32, power: f32) -> f32;
-
-    /// The tail across it, p = γ−3/2.
-    fn across(&self, sin: f32, cos: f32, power: f32) -> f32;
+    /// The tails along the plane of incidence, p = γ−2, and across it, p = γ−3/2.
+    fn tails(&self) -> (&Self::Along, &Self::Across);
 }
 
 /// 1/((2γ−3) ∫(1−t²)^(γ−2)): the weight of slopes relative to the cosine in the projected area.
@@ -65,19 +65,17 @@ impl Area for AnyGamma {
 }
 
 impl Tails for AnyGamma {
+    type Along = Beta;
+    type Across = Beta;
+
     #[inline(always)]
     fn power(&self, _: f32, square: f32) -> f32 {
         square.powf(self.exponents[0])
     }
 
     #[inline(always)]
-    fn along(&self, sin: f32, cos: f32, power: f32) -> f32 {
-        self.along.upper(sin, cos, power)
-    }
-
-    #[inline(always)]
-    fn across(&self, sin: f32, cos: f32, power: f32) -> f32 {
-        self.across.upper(sin, cos, power)
+    fn tails(&self) -> (&Beta, &Beta) {
+        (&self.along, &self.across)
     }
 }
 
@@ -110,19 +108,17 @@ impl<const N: usize> Area for IntegerGamma<N> {
 }
 
 impl<const N: usize> Tails for IntegerGamma<N> {
+    type Along = Sum<N>;
+    type Across = ArcSum<N>;
+
     #[inline(always)]
     fn power(&self, cos: f32, square: f32) -> f32 {
         (2..N).fold(cos, |power, _| power * square)
     }
 
     #[inline(always)]
-    fn along(&self, sin: f32, cos: f32, power: f32) -> f32 {
-        self.along.upper(sin, cos, power)
-    }
-
-    #[inline(always)]
-    fn across(&self, sin: f32, cos: f32, power: f32) -> f32 {
-        self.across.upper(sin, cos, power)
+    fn tails(&self) -> (&Sum<N>, &ArcSum<N>) {
+        (&self.along, &self.across)
     }
 }
 

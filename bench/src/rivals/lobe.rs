@@ -4,7 +4,7 @@
 use glam::Vec3;
 
 use super::form::{self, AnyGamma, Area, HalfIntegerGamma, IntegerGamma, Tails, View};
-use super::tail::whole;
+use super::tail::{Tail, whole};
 
 /// A lobe with its coefficients prepared.
 pub(crate) struct Lobe<F> {
@@ -124,7 +124,7 @@ impl<F: Tails> Lobe<F> {
             let c = y.sqrt();
             let (power, over) = (self.form.power(c, y), x / y);
             let facing = cos * c + sin * x;
-            let mass = cos * self.form.along(x, c, power * y * c) + edge * power * y;
+            let mass = cos * self.form.tails().0.upper(x, c, power * y * c) + edge * power * y;
             let density = self.density[0] * power;
             let bend = sin - cos * over * c - self.exponents[0] * over * facing;
             [mass - target, density * facing, density * bend]
@@ -142,7 +142,7 @@ impl<F: Tails> Lobe<F> {
             let c = y.sqrt();
             let power = self.form.power(c, y);
             let density = self.density[1] * power;
-            let tail = self.form.across(x, c, power * y * y);
+            let tail = self.form.tails().1.upper(x, c, power * y * y);
             [tail - target, density * y, -self.exponents[1] * x * density]
         });
         [sin.copysign(u - 0.5), cos]

@@ -53,9 +53,11 @@ pub(super) struct Function<L> {
     pub(super) name: &'static str,
     /// Whether its arguments depend on the random numbers, as normals and lights do.
     pub(super) reads_numbers: bool,
-    /// Calls it for each case of a range.
-    pub(super) run: Box<dyn Fn(&L, &mut Cases, Range<usize>)>,
+    pub(super) run: Run<L>,
 }
+
+/// Calls it for each case of a range.
+type Run<L> = Box<dyn Fn(&L, &mut Cases, Range<usize>)>;
 
 /// One call after the other; each result is used by itself.
 fn each<L, R>(

@@ -10,7 +10,6 @@
 mod average;
 mod curve;
 mod directional;
-mod domain;
 mod elevation;
 mod find;
 mod moments;

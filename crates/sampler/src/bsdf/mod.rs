@@ -108,20 +108,7 @@ impl<const N: usize> BsdfSample<N> {
 ///   in the surface (z = 0) or not a number.
 ///
 /// Values are finite: an f or a density beyond the range of `f32` is `f32::MAX`.
-///
-/// ```
-/// use microfacet_sampler::glam::Vec3;
-/// use microfacet_sampler::{Bsdf, Conductor, Ggx, Metal, Transport};
-///
-/// let gold = Conductor::new(Ggx::new(0.3)?, Metal::Gold);
-/// let v = Vec3::new(0.6, 0.0, 0.8);
-/// let path = gold.sample(v, 0.5, [0.3, 0.7], Transport::Radiance).unwrap();
-/// assert!(path.weight.iter().all(|&weight| weight <= 1.0));
-/// // Next-event estimation, towards a light that is known.
-/// let (f, pdf) = gold.eval_pdf(v, Vec3::Z, Transport::Radiance);
-/// assert!(f[0] > f[2] && pdf > 0.0);
-/// # Ok::<(), microfacet_sampler::MaterialError>(())
-/// ```
+/// [An example](crate#a-material).
 pub trait Bsdf<const N: usize = 3> {
     /// Draws a light for a view: `choice` chooses among events, `u` the direction.
     ///

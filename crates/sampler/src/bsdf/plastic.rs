@@ -105,23 +105,15 @@ impl<L: MicrofacetDistribution, const N: usize> Plastic<L, N> {
         compensation: Compensation,
         stand_in: StandIn,
     ) -> Result<Self, BindError> {
-        if is_smooth(&lobe, checked(eta)?) {
-            return Self::made(lobe, eta, base, masking, Energy::smooth);
-        }
-        let albedo = tables.dielectric_albedo_of(&lobe, eta, masking, stand_in)?;
-        Self::made(lobe, eta, base, masking, |eta| Energy::rough(albedo, compensation, eta))
-    }
-
-    fn made(
-        lobe: L,
-        eta: f64,
-        base: [f32; N],
-        masking: Masking,
-        energy: impl FnOnce(f32) -> Energy,
-    ) -> Result<Self, BindError> {
         let (index, eta) = (eta, checked(eta)?);
         reflectances("base", &base)?;
-        let energy = Box::new(energy(eta));
+        let smooth = lobe.is_effectively_smooth() || eta == 1.0;
+        let energy = Box::new(if smooth {
+            Energy::smooth(eta)
+        } else {
+            let albedo = tables.dielectric_albedo_of(&lobe, index, masking, stand_in)?;
+            Energy::rough(albedo, compensation, eta)
+        });
         let diffuse = base.map(|base| {
             let left = energy.left(base);
             // No light comes in where none gets out.
@@ -135,7 +127,6 @@ impl<L: MicrofacetDistribution, const N: usize> Plastic<L, N> {
                 + energy.reflected(OUTSIDE) * energy.returned(&shares)
         }));
         let mean = mean * energy.transmitted_average();
-        let smooth = is_smooth(&lobe, eta);
         Ok(Self { lobe, index, eta, base, masking, smooth, energy, diffuse, mean, broad })
     }
 
@@ -200,11 +191,6 @@ impl<L: MicrofacetDistribution, const N: usize> Plastic<L, N> {
         let lobe = self.diffuse.map(|diffuse| entering * leaving * diffuse + coat);
         Part::broad(l, &self.broad, 1.0, lobe)
     }
-}
-
-/// Whether a coat of this index has no facets that count.
-fn is_smooth(lobe: &impl MicrofacetDistribution, eta: f32) -> bool {
-    lobe.is_effectively_smooth() || eta == 1.0
 }
 
 impl<L: MicrofacetDistribution, const N: usize> Bsdf<N> for Plastic<L, N> {

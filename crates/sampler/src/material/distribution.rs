@@ -73,23 +73,7 @@ impl Facet {
 /// transmitting surface first, v ↦ −v and l ↦ −l: facets stay where they are, and m above the
 /// horizon. Its mirror image in the plane z = 0 sees other facets: the density of visible normals
 /// is another there, and for a tilted lobe masking is, too. Sampling takes a view below the horizon
-/// at it; densities are for views above it.
-///
-/// ```
-/// use microfacet_sampler::glam::Vec3;
-/// use microfacet_sampler::{Ggx, Masking, MicrofacetDistribution};
-///
-/// /// The weight f cos / pdf of one reflection, without Fresnel, and its direction.
-/// fn reflect(lobe: &impl MicrofacetDistribution, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
-///     let m = lobe.sample_visible_normal(v, u);
-///     let l = 2.0 * v.dot(m) * m - v;
-///     (l, lobe.reflection_weight(v, l, Masking::HeightCorrelated))
-/// }
-///
-/// let (l, weight) = reflect(&Ggx::new(0.3)?, Vec3::new(0.6, 0.0, 0.8), [0.3, 0.7]);
-/// assert!(l.z > 0.0 && weight > 0.9 && weight <= 1.0);
-/// # Ok::<(), microfacet_sampler::MaterialError>(())
-/// ```
+/// at it; densities are for views above it. [An example](crate#a-bsdf-of-your-own).
 pub trait MicrofacetDistribution {
     /// Normal distribution function D(m), with ∫ D(m) (m·n) dm = 1; 0 for m at or below the
     /// horizon.

@@ -4,7 +4,7 @@
 //! crate), so one lookup inverts each CDF. A table holds the distance of the slope's half tangent
 //! from an end, see [`half_tangent`](microfacet_tables::axis::half_tangent); there the silhouette is
 //! linear in the view coordinate, so no sampled normal faces away, however coarse the table. Here
-//! each lookup stands as it reads; [`lanes`] has those that a renderer calls, in SIMD.
+//! each lookup stands as it reads; [`lanes`](super::lanes) has those that a renderer calls.
 
 use core::f32::consts::PI;
 
@@ -224,10 +224,10 @@ impl StudentT {
         let (row, between) = self.locate_row(view);
         let towards = u > 0.5;
         let t = MirroredRoot::coordinate(u);
-        let (cell, w) = locate(t * slices.half_cells as f32, slices.half_cells);
+        let (cell, w) = locate(t * slices.half_cells() as f32, slices.half_cells());
         // A row holds both halves, cells + 1 nodes each.
-        let stride = 2 * (slices.half_cells + 1);
-        let start = row * stride + if towards { slices.half_cells + 1 } else { 0 } + cell;
+        let stride = 2 * slices.half as usize;
+        let start = row * stride + if towards { slices.half as usize } else { 0 } + cell;
         let nodes = &slices.slope[..];
         let (a, b) = between_rows(
             &nodes[start..start + 2],
