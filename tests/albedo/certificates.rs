@@ -10,9 +10,8 @@ use glam::{DVec3, Vec3};
 use microfacet_baker::bake::{albedo, bake_radial};
 use microfacet_baker::certify::radial::certify;
 use microfacet_baker::distribution::Named;
-use microfacet_baker::plan::{Options, Plan};
+use microfacet_baker::plan::Plan;
 use microfacet_baker::progress::Stage;
-use microfacet_baker::scene::Scene;
 use microfacet_baker::table_set::{Target, bake};
 use microfacet_baker::table_spec::Quality;
 use microfacet_model::classic::{Marginal, MarginalView};
@@ -21,13 +20,12 @@ use microfacet_model::{
 };
 use microfacet_sampler::{Lobe, MicrofacetDistribution, Skew, StudentT, Tables};
 use microfacet_tables::axis::MirroredRoot;
-use microfacet_tables::{
-    Axis, Interval, Kind, LobeSpec, Mapping, MaterialEntry, Precision, Provenance, Quantity,
-    Roughness, Table,
-};
+use microfacet_tables::{Axis, Kind, Mapping, Precision, Quantity, Table};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
+
+use crate::sets::{DRAFT, baked, draft, outside, recipe, set_of};
 
 /// Places in a cell, as parts of its width.
 const PARTS: [f64; 7] = [0.0, 0.125, 0.3, 0.375, 0.5, 0.625, 0.8];
@@ -66,15 +64,10 @@ fn signed(shape: &Shape, x: f64) -> SignedSlope {
     SignedSlope { w: shape.asinh_slope(x.abs()), sign: if x < 0.0 { -1.0 } else { 1.0 } }
 }
 
-fn baked(plan: &Plan, precision: Precision) -> Tables {
-    bake(plan, Target::Quality(Quality::Draft, precision)).unwrap().set
-}
-
 /// The set for one shape.
 fn single(gamma: f64, precision: Precision) -> Tables {
-    let recipe = format!("[[material]]\nname = \"it\"\nsigma = 0.3\ngamma = {gamma}\n");
-    let scene = Scene::from_recipe_str(&recipe).unwrap();
-    baked(&Plan::new(&scene, Options::default()).unwrap(), precision)
+    let recipe = recipe(&[["it", "0.3", &gamma.to_string(), ""]]);
+    baked(&recipe, Target::Quality(Quality::Draft, precision))
 }
 
 fn g1_error(table: &Table, lobe: &StudentT, shape: &Shape) -> f64 {
@@ -144,7 +137,8 @@ fn hold(set: &Tables) {
 
 #[test]
 fn of_the_general_set() {
-    hold(&baked(&Plan { albedos: Vec::new(), ..Plan::general() }, Precision::F32));
+    let plan = Plan { albedos: Vec::new(), ..Plan::general() };
+    hold(&bake(&plan, DRAFT).unwrap().set);
 }
 
 #[test]
@@ -164,24 +158,11 @@ struct Own<'a> {
 
 impl<'a> Own<'a> {
     fn new(name: &str, marginal: &'a Marginal<'a>) -> Self {
-        let entry = MaterialEntry {
-            name: "it".into(),
-            lobe: LobeSpec {
-                distribution: Some(name.into()),
-                ..LobeSpec::family(
-                    Roughness::Isotropic(Interval::point(marginal.sigma())),
-                    Interval::point(f64::INFINITY),
-                )
-            },
-            masking: None,
-            fresnel: None,
-        };
+        let entry = outside(name, marginal);
         let mut tables =
             bake_radial(marginal, name, Quality::Draft, Precision::F32, &Stage::unwatched());
         certify(&mut tables, &entry, marginal, &Stage::unwatched()).unwrap();
-        let provenance = Provenance { materials: vec![entry], ..Provenance::default() };
-        let radial =
-            Tables::from_tables(provenance, tables.clone()).unwrap().material("it").unwrap();
+        let radial = set_of(tables.clone(), Some(entry)).material("it").unwrap();
         Self { tables, radial, marginal }
     }
 
@@ -249,16 +230,9 @@ impl<'a> Own<'a> {
 
 #[test]
 fn of_other_distributions_however_narrow() {
-    for name in [
-        "gtr:0.2,1.5",
-        "gtr:0.001,3",
-        "gauss:0.3",
-        "gauss:0.01",
-        "schlick:0.3",
-        "schlick:0.001",
-        "sawicki:12",
-        "sawicki:1e6",
-    ] {
+    let usual = ["gtr:0.2,1.5", "gauss:0.3", "schlick:0.3", "sawicki:12"];
+    let narrow = ["gtr:0.001,3", "gauss:0.01", "schlick:0.001", "sawicki:1e6"];
+    for name in usual.into_iter().chain(narrow) {
         let built = name.parse::<Named>().unwrap().build().unwrap();
         let marginal = Marginal::new(&*built);
         Own::new(name, &marginal).hold(name);
@@ -297,8 +271,7 @@ fn no_view_errs_by_more(recipe: &str, lobe: &Ellipsoid, views: impl Iterator<Ite
         "[[material]]\nname = \"it\"\n{recipe}\nfresnel = \"mirror\"\n\
          masking = \"height-correlated\"\n"
     );
-    let plan = Plan::new(&Scene::from_recipe_str(&recipe).unwrap(), Options::default()).unwrap();
-    let set = bake(&plan, Target::Quality(Quality::Draft, Precision::F32)).unwrap().set;
+    let set = draft(&recipe);
     let table = set.tables().iter().find(|table| table.kind == Kind::Albedo).unwrap();
     let tabulated = set.material_albedo("it").unwrap();
 

@@ -3,7 +3,6 @@
 
 use std::sync::OnceLock;
 
-use glam::Vec3;
 use microfacet_baker::bake::albedo::{AlbedoLobe, bake};
 use microfacet_baker::plan::RequiredAlbedo;
 use microfacet_baker::progress::Stage;
@@ -11,6 +10,8 @@ use microfacet_baker::table_spec::Quality;
 use microfacet_sampler::{Masking, Tables};
 use microfacet_tables::{Interval, Precision, Table};
 use microfacet_validate::furnace::{TOLERANCE, direction, furnace, survey};
+
+use crate::sets::{self, set_of};
 
 /// Full tables of the two shapes, at the nodes of the default quality.
 fn baked() -> &'static [Table] {
@@ -28,7 +29,7 @@ fn bake_at(quality: Quality) -> Vec<Table> {
 }
 
 fn set() -> Tables {
-    Tables::from_tables(Default::default(), baked().to_vec()).unwrap()
+    set_of(baked().to_vec(), None)
 }
 
 #[test]
@@ -78,7 +79,7 @@ fn a_wrong_table_does_not_close() {
     let mut tables = baked().to_vec();
     // E − 1 three per cent too small.
     tables.iter_mut().flat_map(|table| table.values.iter_mut().step_by(3)).for_each(|e| *e *= 0.97);
-    let set = Tables::from_tables(Default::default(), tables).unwrap();
+    let set = set_of(tables, None);
     assert!(survey(&set, &Stage::unwatched()).unwrap().iter().all(|survey| !survey.passed()));
 }
 
@@ -86,7 +87,7 @@ fn a_wrong_table_does_not_close() {
 /// promised domain.
 #[test]
 fn compensation_makes_no_energy() {
-    let set = Tables::from_tables(Default::default(), bake_at(Quality::High)).unwrap();
+    let set = set_of(bake_at(Quality::High), None);
     for masking in Masking::ALL {
         for gamma in [2.0, f64::INFINITY] {
             for sigma in [0.01, 0.03, 0.11, 0.37, 0.9, 1.7, 2.6] {
@@ -103,14 +104,10 @@ fn compensation_makes_no_energy() {
 #[test]
 fn the_compensated_lobe_is_reciprocal_and_never_negative() {
     let set = set();
-    let direction = |cos: f32, phi: f32| {
-        let sin = (1.0 - cos * cos).sqrt();
-        Vec3::new(sin * phi.cos(), sin * phi.sin(), cos)
-    };
     for masking in Masking::ALL {
         let albedo = set.albedo(0.7, 2.0, masking).unwrap();
         for (a, b) in [(0.01, 0.9), (0.2, 0.5), (1.0, 1e-5), (0.7, 0.71)] {
-            let (v, l) = (direction(a, 0.0), direction(b, 2.0));
+            let (v, l) = (sets::direction(a, 0.0), sets::direction(b, 2.0));
             let there = albedo.compensation(v, l);
             assert!(there > 0.0 && (there - albedo.compensation(l, v)).abs() <= 1e-6 * there);
             assert_eq!(albedo.compensation(v, -l), 0.0);

@@ -2,6 +2,8 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../common/sets.rs"]
+mod sets;
 
 mod albedo;
 mod certificates;

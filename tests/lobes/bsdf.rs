@@ -4,17 +4,15 @@
 use std::sync::OnceLock;
 
 use glam::Vec3;
-use microfacet_baker::plan::{Options as PlanOptions, Plan};
 use microfacet_baker::progress::Stage;
-use microfacet_baker::scene::Scene;
-use microfacet_baker::table_set::{Settings, Target, bake};
+use microfacet_baker::table_set::Settings;
 use microfacet_baker::table_spec::Quality;
 use microfacet_sampler::bsdf::Event;
 use microfacet_sampler::{
     AnyBsdf, BindError, Bsdf, Compensation, Conductor, ConductorFresnel, Dielectric, Lobe, Masking,
     Plastic, Skew, StandIn, Tables, Transport,
 };
-use microfacet_tables::{Kind, Precision, encode};
+use microfacet_tables::Kind;
 use microfacet_validate::bsdf::chi_square::{run, test};
 use microfacet_validate::bsdf::configuration::{Configuration, configurations};
 use microfacet_validate::bsdf::specimen::{LobeOf, Specimen, Surface, tables};
@@ -22,10 +20,7 @@ use microfacet_validate::bsdf::{furnace, reciprocity};
 use microfacet_validate::{LEVEL, Options};
 
 use crate::common::{json, ok, refused, run as run_command};
-
-fn unwatched() -> Stage {
-    Stage::unwatched()
-}
+use crate::sets::{draft, recipe};
 
 /// The configurations of the tests, and their albedos.
 fn drawn() -> &'static (Vec<Configuration>, Tables) {
@@ -42,7 +37,7 @@ fn drawn() -> &'static (Vec<Configuration>, Tables) {
 fn samples_have_their_density() {
     let (all, set) = drawn();
     let options = Options { samples: 200_000, gamma_factor: 1.0 };
-    let result = run(set, all, options, &unwatched()).unwrap();
+    let result = run(set, all, options, &Stage::unwatched()).unwrap();
     let worst = &result.reports[0];
     assert!(result.passed(), "p = {:e}: {}", worst.test.p, worst.configuration);
     // The tests resolve: hundreds of cells each, but for what loses most of its light.
@@ -161,7 +156,7 @@ fn another_shape_is_rejected() {
         .collect();
     let judge = |gamma_factor| {
         let options = Options { samples: 1_000_000, gamma_factor };
-        run(&Tables::embedded(), &all, options, &unwatched()).unwrap()
+        run(&Tables::embedded(), &all, options, &Stage::unwatched()).unwrap()
     };
     assert!(judge(1.0).passed());
     assert_eq!(judge(1.05).rejected(), all.len());
@@ -187,7 +182,7 @@ fn white_surfaces_return_all_light_and_wrong_tables_do_not() {
     let (pairs, masking) = (&[[3.0, 1.5]], Masking::HeightCorrelated);
     let set = furnace::tables(pairs, masking, Settings::default()).unwrap();
     let all = furnace::rows(pairs, masking);
-    let rows = furnace::run(&set, &all, 20_000, 1, &unwatched()).unwrap();
+    let rows = furnace::run(&set, &all, 20_000, 1, &Stage::unwatched()).unwrap();
     assert_eq!(rows.len(), 144);
     for row in &rows {
         assert!(row.passed(), "{row}");
@@ -204,16 +199,10 @@ fn white_surfaces_return_all_light_and_wrong_tables_do_not() {
         table.values.iter_mut().for_each(|share| *share *= 0.97);
     }
     let wrong = Tables::from_tables(set.provenance().clone(), tables).unwrap();
-    let rows = furnace::run(&wrong, &all, 0, 1, &unwatched()).unwrap();
+    let rows = furnace::run(&wrong, &all, 0, 1, &Stage::unwatched()).unwrap();
     for name in &furnace::NAMES[1..] {
         assert!(rows.iter().any(|row| row.name() == *name && !row.passed()), "{name}");
     }
-}
-
-fn draft(recipe: &str) -> Tables {
-    let scene = Scene::from_recipe_str(recipe).expect(recipe);
-    let plan = Plan::new(&scene, PlanOptions::default()).unwrap();
-    bake(&plan, Target::Quality(Quality::Draft, Precision::F32)).unwrap().set
 }
 
 /// The lines of a recipe in an error.
@@ -239,10 +228,8 @@ fn the_lines_of_an_error_make_what_is_missing() {
             // The lobe's own albedo, and not that of a round one.
             let exact = set.material_albedo("another name").unwrap();
             let v = Vec3::new(0.0, 0.8, 0.6);
-            let l = Vec3::new(0.0, 0.8, 0.6);
-            let more =
-                whole.eval(v, l, Transport::Radiance)[0] - gold.eval(v, l, Transport::Radiance)[0];
-            assert!((more / exact.compensation(v, l) - 1.0).abs() < 1e-2, "{lines}");
+            let [f, g] = [&whole, &gold].map(|bsdf| bsdf.eval(v, v, Transport::Radiance)[0]);
+            assert!(((f - g) / exact.compensation(v, v) - 1.0).abs() < 1e-2, "{lines}");
         }
     }
 }
@@ -255,48 +242,19 @@ fn the_lines_of_a_message_make_a_plastic() {
         Plastic::new(coat, 1.5, [0.1, 0.4, 0.2], set, Compensation::None, StandIn::Refused)
     };
     let lines = lines(&bind(&Tables::embedded()).unwrap_err());
-    let set = draft(&lines);
-    let file = encode(set.provenance(), set.tables()).unwrap();
-    bind(&Tables::from_bytes(&file).unwrap()).expect(&lines);
+    bind(&draft(&lines)).expect(&lines);
 }
 
 /// A recipe that names an anisotropic or tilted lobe serves it exactly, by name and by parameters.
 #[test]
 fn named_materials_have_their_own_albedos() {
-    let set = draft(
-        r#"
-[[material]]
-name = "brushed"
-sigma = [0.5, 0.15]
-gamma = 3.0
-fresnel = "mirror"
-
-[[material]]
-name = "tilted"
-sigma = [0.5, 0.3]
-theta = [0.2, -0.1, 0.7]
-gamma = 2.5
-fresnel = "mirror"
-
-[[material]]
-name = "gold"
-sigma = 0.3
-gamma = 3.0
-fresnel = { metal = "gold" }
-
-[[material]]
-name = "glass"
-sigma = 0.4
-gamma = 3.0
-fresnel = { dielectric = 1.5 }
-masking = "uncorrelated"
-
-[[material]]
-name = "unstated"
-sigma = 0.4
-gamma = 3.0
-"#,
-    );
+    let set = draft(&recipe(&[
+        ["brushed", "[0.5, 0.15]", "3.0", "fresnel = \"mirror\""],
+        ["tilted", "[0.5, 0.3]", "2.5", "theta = [0.2, -0.1, 0.7]\nfresnel = \"mirror\""],
+        ["gold", "0.3", "3.0", "fresnel = { metal = \"gold\" }"],
+        ["glass", "0.4", "3.0", "fresnel = { dielectric = 1.5 }\nmasking = \"uncorrelated\""],
+        ["unstated", "0.4", "3.0", ""],
+    ]));
     let v = Vec3::new(0.3, 0.4, 0.75_f32.sqrt());
     for name in ["brushed", "tilted"] {
         let of = |form| set.bsdf(name, form, StandIn::Refused).expect(name);
@@ -313,17 +271,11 @@ gamma = 3.0
     let mirror: Conductor<_, 1> = Conductor::new(tilted, ConductorFresnel::mirror());
     mirror.compensated(&set, Compensation::KullaConty, StandIn::Refused).unwrap();
 
-    let Ok(AnyBsdf::Conductor(gold)) = set.bsdf("gold", Compensation::Turquin, StandIn::Refused)
-    else {
-        panic!("gold is a conductor");
-    };
+    let of = |name, form| set.bsdf(name, form, StandIn::Refused).expect(name);
+    let AnyBsdf::Conductor(gold) = of("gold", Compensation::Turquin) else { panic!() };
     let want: ConductorFresnel = microfacet_sampler::Metal::Gold.into();
     assert_eq!((gold.fresnel(), gold.masking()), (&want, Masking::HeightCorrelated));
-    let Ok(AnyBsdf::Dielectric(glass)) =
-        set.bsdf("glass", Compensation::KullaConty, StandIn::Refused)
-    else {
-        panic!("glass is a dielectric");
-    };
+    let AnyBsdf::Dielectric(glass) = of("glass", Compensation::KullaConty) else { panic!() };
     assert_eq!((glass.eta(), glass.masking()), (1.5, Masking::Uncorrelated));
     let sample = glass.sample(v, 0.9, [0.5; 2], Transport::Radiance).unwrap();
     assert_eq!(sample.event, Event::Transmission);
@@ -335,18 +287,20 @@ gamma = 3.0
 fn the_command_judges() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    let few = ["bsdf", "--only", "chi-square", "--configurations", "3", "--samples", "2e4"];
+    let three = ["bsdf", "--configurations", "3", "--only"];
+    let few = [&three[..], &["chi-square", "--samples", "2e4"]].concat();
     assert!(ok(at, &few).ends_with("PASSED\n"));
     let one = json(at, &few);
     assert!(one["passed"] == true && one["chi_square"]["rejected"] == 0, "{one}");
     assert!(one["furnace"].is_null());
-    let pairs = ["bsdf", "--only", "reciprocity", "--configurations", "3"];
-    assert!(json(at, &pairs)["reciprocity"]["reflected"].as_u64() > Some(100));
-    let wrong = ["bsdf", "--only", "chi-square", "--configurations", "3", "--samples", "1e6"];
-    let output = run_command(at, &[&wrong[..], &["--perturb-gamma", "1.3"]].concat());
+    let pairs = json(at, &[&three[..], &["reciprocity"]].concat());
+    assert!(pairs["reciprocity"]["reflected"].as_u64() > Some(100));
+    let wrong = ["chi-square", "--samples", "1e6", "--perturb-gamma", "1.3"];
+    let output = run_command(at, &[&three[..], &wrong].concat());
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(output.status.code() == Some(1) && text.ends_with("REJECTED\n"), "{text}");
-    assert!(refused(at, &["bsdf", "--gamma", "2"]).contains("--eta"));
-    assert!(refused(at, &["bsdf", "--gamma", "1.5005", "--eta", "1.5"]).contains("1.501"));
-    assert!(refused(at, &["bsdf", "--gamma", "2", "--eta", "0"]).contains("[0.1, 10]"));
+    let refused = |args: &[&str]| refused(at, &[&["bsdf"], args].concat());
+    assert!(refused(&["--gamma", "2"]).contains("--eta"));
+    assert!(refused(&["--gamma", "1.5005", "--eta", "1.5"]).contains("1.501"));
+    assert!(refused(&["--gamma", "2", "--eta", "0"]).contains("[0.1, 10]"));
 }

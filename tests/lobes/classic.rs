@@ -16,76 +16,44 @@ use microfacet_baker::scene::Scene;
 use microfacet_baker::table_set::{Target, bake};
 use microfacet_baker::table_spec::{Quality, general_set};
 use microfacet_model::classic::{Isotropic, Marginal, MarginalView, Tabulated};
-use microfacet_model::statistics::chi_square;
+use microfacet_model::statistics::{chi_square, sidak};
 use microfacet_sampler::{Lobe, MicrofacetDistribution, Tables};
 use microfacet_scene::load;
-use microfacet_tables::{
-    Interval, Kind, LobeSpec, MaterialEntry, Precision, Provenance, Quantity, Roughness, encode,
-};
+use microfacet_tables::{Kind, Precision, Quantity, encode};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
+use crate::sets::{outside, set_of};
+
 /// Distributions of every kind, by name.
 fn all() -> Vec<(String, Box<dyn Isotropic>)> {
-    let names = [
-        "gauss:0.1",
-        "gauss:0.4",
-        "gtr:0.1,1.2",
-        "gtr:0.3,3",
-        "gtr:0.5,0.7",
-        "schlick:0.05",
-        "schlick:0.3",
-        "sawicki:0",
-        "sawicki:12",
-        "sawicki:1000",
-    ];
-    let mut all: Vec<(String, Box<dyn Isotropic>)> = names
-        .iter()
-        .map(|text| (text.to_string(), text.parse::<Named>().unwrap().build().unwrap()))
-        .collect();
-    let smooth = "gauss:0.25".parse::<Named>().unwrap().build().unwrap();
-    let rows: Vec<_> = (0..=450)
-        .map(|i| f64::from(i) * 0.5 * PI / 450.0)
-        .map(|t| (t, smooth.d(t) + 0.02))
-        .collect();
+    let built = |text: &str| text.parse::<Named>().unwrap().build().unwrap();
+    let names = "gauss:0.1 gauss:0.4 gtr:0.1,1.2 gtr:0.3,3 gtr:0.5,0.7 schlick:0.05 schlick:0.3 \
+                 sawicki:0 sawicki:12 sawicki:1000";
+    let mut all: Vec<(String, Box<dyn Isotropic>)> =
+        names.split(' ').map(|text| (text.into(), built(text))).collect();
+    let smooth = built("gauss:0.25");
+    let angles = (0..=450).map(|i| f64::from(i) * 0.5 * PI / 450.0);
+    let rows: Vec<_> = angles.map(|t| (t, smooth.d(t) + 0.02)).collect();
     all.push(("measured:wide".into(), Box::new(Tabulated::new(&rows).unwrap())));
     all
 }
 
 fn tabulated(name: &str, marginal: &Marginal) -> Lobe {
-    let entry = MaterialEntry {
-        name: "it".into(),
-        lobe: LobeSpec {
-            distribution: Some(name.into()),
-            ..LobeSpec::family(
-                Roughness::Isotropic(Interval::point(marginal.sigma())),
-                Interval::point(f64::INFINITY),
-            )
-        },
-        masking: None,
-        fresnel: None,
-    };
     let tables = bake_radial(marginal, name, Quality::Default, Precision::F32, &Stage::unwatched());
-    let provenance = Provenance { materials: vec![entry], ..Provenance::default() };
-    Tables::from_tables(provenance, tables).unwrap().material("it").unwrap()
+    set_of(tables, Some(outside(name, marginal))).material("it").unwrap()
 }
 
 /// The lobes of [`all`] from their tables.
 static LOBES: LazyLock<Vec<Lobe>> =
     LazyLock::new(|| all().iter().map(|(name, d)| tabulated(name, &Marginal::new(&**d))).collect());
 
-fn view(theta: f64) -> Vec3 {
-    DVec3::new(theta.sin(), 0.0, theta.cos()).as_vec3()
-}
-
 #[test]
 fn tables_follow_the_quadrature() {
     for ((name, d), radial) in all().into_iter().zip(LOBES.iter()) {
         let e = measure(radial, &Marginal::new(&*d));
-        assert!(
-            e.g1 < 1e-4 && e.along < 5e-4 && e.across < 5e-4 && e.density < 1e-3,
-            "{name}: {e:?}"
-        );
+        let close = e.g1 < 1e-4 && e.along < 5e-4 && e.across < 5e-4 && e.density < 1e-3;
+        assert!(close, "{name}: {e:?}");
     }
 }
 
@@ -97,7 +65,7 @@ fn draws_pass_chi_square() {
     for ((name, d), radial) in all().into_iter().zip(LOBES.iter()) {
         let marginal = Marginal::new(&*d);
         for theta in [0.0, 0.7, 1.3, 1.55] {
-            let v = view(theta);
+            let v = DVec3::new(f64::sin(theta), 0.0, f64::cos(theta)).as_vec3();
             let cot = f64::from(v.z) / (marginal.sigma() * f64::from(v.x));
             let exact = MarginalView::new(&marginal, cot);
             const BINS: usize = 10;
@@ -118,13 +86,9 @@ fn draws_pass_chi_square() {
             }
         }
     }
-    println!("{tests} tests, smallest p {:.4} ({})", smallest.0, smallest.1);
-    assert!(
-        smallest.0 > 1.0 - 0.99_f64.powf(1.0 / f64::from(tests)),
-        "p = {} for {}",
-        smallest.0,
-        smallest.1
-    );
+    let (p, at) = smallest;
+    println!("{tests} tests, smallest p {p:.4} ({at})");
+    assert!(p > sidak(0.01, tests), "p = {p} for {at}");
 }
 
 #[test]
@@ -144,14 +108,17 @@ fn recipes_name_distributions() {
     let again = Scene::from_recipe_str(&text).unwrap();
     assert!(again.materials[0].asks_the_same(&gtr), "{text}");
     let refused = |text: &str| material(text).unwrap_err().to_string();
-    assert!(refused("distribution = \"gtr\"\nc = 0.2").contains("has no `gamma`"));
-    assert!(refused("distribution = \"gtr\"\nc = 2.0\ngamma = 3").contains("(0, 1]"));
-    assert!(refused("distribution = \"phong\"\nn = 3").contains("there are beckmann"));
-    assert!(
-        refused("distribution = \"gauss\"\nm = 0.2\nsigma = 0.1").contains("unknown key `sigma`")
-    );
-    assert!(refused("distribution = { measured = \"nowhere.csv\" }").contains("nowhere.csv"));
-    assert!(refused("distribution = 3").contains("name in quotes"));
+    for (distribution, why) in [
+        ("\"gtr\"\nc = 0.2", "has no `gamma`"),
+        ("\"gtr\"\nc = 2.0\ngamma = 3", "(0, 1]"),
+        ("\"phong\"\nn = 3", "there are beckmann"),
+        ("\"gauss\"\nm = 0.2\nsigma = 0.1", "unknown key `sigma`"),
+        ("{ measured = \"nowhere.csv\" }", "nowhere.csv"),
+        ("3", "name in quotes"),
+    ] {
+        let message = refused(&format!("distribution = {distribution}"));
+        assert!(message.contains(why), "{message}");
+    }
 }
 
 #[test]
@@ -173,12 +140,9 @@ fn a_recipe_bakes_all_kinds() {
     let bake = |target| bake(&plan, target);
     // Fixed point is enough for this error, in half the bytes.
     let rough = bake(Target::MaxError(1e-3)).unwrap().set;
-    assert!(
-        rough
-            .tables()
-            .iter()
-            .all(|table| table.precision == Precision::U16 && table.certificate.worst() <= 1e-3)
-    );
+    for table in rough.tables() {
+        assert!(table.precision == Precision::U16 && table.certificate.worst() <= 1e-3);
+    }
     let [full, fixed] = [Precision::F32, Precision::U16]
         .map(|precision| bake(Target::Quality(Quality::Draft, precision)).unwrap().set);
     for (precision, set) in [(Precision::F32, &full), (Precision::U16, &fixed)] {

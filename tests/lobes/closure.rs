@@ -7,8 +7,10 @@ use microfacet_baker::plan::RequiredAlbedo;
 use microfacet_baker::table_spec::Quality;
 use microfacet_sampler::albedo::ViewCurve;
 use microfacet_sampler::{Masking, Tables};
-use microfacet_tables::{Interval, Precision, Reflectance, Roughness, Side};
+use microfacet_tables::{Precision, Reflectance, Roughness, Side};
 use rand::{RngExt, SeedableRng};
+
+use crate::sets::set_of;
 
 /// 2∫ μ dμ of functions of the view, by the midpoint rule in ln h, h the tangent of half the
 /// elevation.
@@ -39,10 +41,9 @@ fn worst(set: &Tables, gammas: [f64; 2], sigmas: [f64; 2]) -> f64 {
         materials.extend([1.5016, 2.0, f64::INFINITY].map(|gamma| [sigma, gamma]));
     }
     materials.extend([[0.0, gammas[0]], [6.519e-8, 1.5016], [3.17e-3, f64::INFINITY]]);
-    materials.extend(
-        (0..100)
-            .map(|_| [between(sigmas, random.random()), 1.5 + between(offsets, random.random())]),
-    );
+    let mut anywhere =
+        |_| [between(sigmas, random.random()), 1.5 + between(offsets, random.random())];
+    materials.extend((0..100).map(&mut anywhere));
     let (mut worst, mut count) = ((0.0, [0.0; 2], Masking::Uncorrelated), 0);
     for ([sigma, gamma], masking) in
         materials.iter().flat_map(|&material| Masking::ALL.map(|masking| (material, masking)))
@@ -79,12 +80,11 @@ fn the_default_set_closes() {
 #[test]
 fn a_draft_set_closes() {
     // Heavy tails of smooth surfaces, where draft tables are the coarsest.
-    let interval = |[min, max]: [f64; 2]| Interval { min, max };
     let (gammas, sigmas) = ([1.501, 1.52], [1e-8, 1e-6]);
-    let lobe = AlbedoLobe::family(Roughness::Isotropic(interval(sigmas)), interval(gammas));
+    let lobe = AlbedoLobe::family(Roughness::Isotropic(sigmas.into()), gammas.into());
     let need = RequiredAlbedo { lobe, ..RequiredAlbedo::general() };
     let tables = bake(&need.spec(Quality::Draft, Precision::F32).unwrap()).unwrap();
-    let set = Tables::from_tables(Default::default(), tables).unwrap();
+    let set = set_of(tables, None);
     assert!(worst(&set, gammas, sigmas) < 5e-4);
 }
 

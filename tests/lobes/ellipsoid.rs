@@ -5,9 +5,8 @@
 
 use std::f64::consts::PI;
 
-use glam::{DVec3, Vec3};
-use microfacet_baker::plan::{Options, Plan};
-use microfacet_baker::scene::Scene;
+use glam::Vec3;
+use microfacet_baker::plan::Options;
 use microfacet_baker::table_set::{Target, bake};
 use microfacet_model as model;
 use microfacet_model::MicrofacetDistribution as _;
@@ -17,11 +16,12 @@ use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
+use crate::sets::{direction, plan, recipe};
+
 /// A set with the single shape γ.
 fn tables(gamma: f64) -> Tables {
-    let recipe = format!("[[material]]\nname = \"it\"\nsigma = 0.3\ngamma = {gamma:?}\n");
-    let scene = Scene::from_recipe_str(&recipe).unwrap();
-    let plan = Plan::new(&scene, Options { tabulate_ggx: true, ..Options::default() }).unwrap();
+    let recipe = recipe(&[["it", "0.3", &format!("{gamma:?}"), ""]]);
+    let plan = plan(&recipe, Options { tabulate_ggx: true, ..Options::default() });
     bake(&plan, Target::default()).unwrap().set
 }
 
@@ -39,9 +39,7 @@ fn random(rng: &mut StdRng, gamma: f64) -> (model::Ellipsoid, Skew) {
 }
 
 fn above(rng: &mut StdRng) -> Vec3 {
-    let (z, phi) = (rng.random_range(0.02..1.0_f64), rng.random_range(0.0..2.0 * PI));
-    let r = (1.0 - z * z).sqrt();
-    DVec3::new(r * phi.cos(), r * phi.sin(), z).normalize().as_vec3()
+    direction(rng.random_range(0.02..1.0), rng.random_range(0.0..2.0 * PI))
 }
 
 /// A view above the surface; below the lobe's horizon where `below` asks for it and one is found.
@@ -65,18 +63,12 @@ fn values_follow_the_model() {
             let v = view(&mut rng, &truth, i % 2 == 0);
             let v64 = v.as_dvec3();
             below += usize::from(truth.skew().direction(v64.to_array())[2] < 0.0);
-            let g1 = truth.g1(v64);
-            assert!(
-                (f64::from(e.g1(v)) - g1).abs() < 2e-5,
-                "gamma {gamma}, {v}: {} against {g1}",
-                e.g1(v)
-            );
+            let (got, want) = (f64::from(e.g1(v)), truth.g1(v64));
+            assert!((got - want).abs() < 2e-5, "gamma {gamma}, {v}: {got} against {want}");
             for _ in 0..20 {
                 let m = e.sample_visible_normal(v, [rng.random(), rng.random()]);
-                assert!(
-                    (m.length() - 1.0).abs() < 1e-6 && m.z > 0.0 && m.dot(v) > -1e-6,
-                    "{m} from {v}"
-                );
+                let unit = (m.length() - 1.0).abs() < 1e-6;
+                assert!(unit && m.z > 0.0 && m.dot(v) > -1e-6, "{m} from {v}");
                 let (got, want) =
                     (e.visible_normal_pdf(v, m), truth.visible_normal_pdf(v64, m.as_dvec3()));
                 // The relative error of D in f32 is its exponent times an ulp; grazing facets lose
@@ -105,11 +97,8 @@ fn plain_matrices_give_plain_normals() {
         );
         for _ in 0..10_000 {
             let (v, u) = (above(&mut rng), [rng.random(), rng.random()]);
-            let (m, expected) = (e.sample_visible_normal(v, u), plain.sample_visible_normal(v, u));
-            assert!(
-                (m - expected).length() < 2e-6,
-                "gamma {gamma}, {v}, {u:?}: {m} against {expected}"
-            );
+            let (m, want) = (e.sample_visible_normal(v, u), plain.sample_visible_normal(v, u));
+            assert!((m - want).length() < 2e-6, "gamma {gamma}, {v}, {u:?}: {m} against {want}");
         }
     }
 }
@@ -129,10 +118,7 @@ fn matrices_almost_singular_give_normals() {
                     let (v, u) = (above(&mut rng), [ends[i % 5], ends[i / 5 % 5]]);
                     let m = e.sample_visible_normal(v, u);
                     let unit = (m.length() - 1.0).abs() < 1e-6 && m.z > 0.0;
-                    assert!(
-                        unit,
-                        "gamma {gamma}, sigma {sigma:?}, theta {theta:?}, {v}, {u:?}: {m}"
-                    );
+                    assert!(unit, "gamma {gamma}, {sigma:?}, {theta:?}, {v}, {u:?}: {m}");
                 }
             }
         }
@@ -203,7 +189,7 @@ fn weights(draws: usize) -> (f32, f64) {
             for _ in 0..each {
                 let m = e.sample_visible_normal(v, [rng.random(), rng.random()]);
                 let l = 2.0 * v.dot(m) * m - v;
-                for masking in [Masking::Uncorrelated, Masking::HeightCorrelated] {
+                for masking in Masking::ALL {
                     let weight = if l.z > 0.0 { e.reflection_weight(v, l, masking) } else { 0.0 };
                     assert!(weight >= 0.0, "gamma {gamma}: {weight}");
                     largest = largest.max(weight);

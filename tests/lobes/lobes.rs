@@ -1,46 +1,25 @@
 //! The one trait: every lobe answers alike, as itself, as a [`Lobe`] and as a trait object, and
 //! what has a counterpart in the model agrees with it.
 
+use std::sync::LazyLock;
+
 use glam::{DVec3, Vec3};
-use microfacet_baker::plan::{Options, Plan};
-use microfacet_baker::scene::Scene;
-use microfacet_baker::table_set::{Target, bake};
-use microfacet_baker::table_spec::Quality;
 use microfacet_model as model;
 use microfacet_model::classic::Gtr;
 use microfacet_sampler::{Ggx, Lobe, Masking, MicrofacetDistribution, Skew, StudentT, Tables};
-use microfacet_tables::Precision;
 
-const RECIPE: &str = "
-[[material]]
-name = \"glass\"
-sigma = [0.3, 0.5]
-gamma = 3.0
-
-[[material]]
-name = \"steel\"
-sigma = 0.2
-gamma = 2.0
-
-[[material]]
-name = \"brushed\"
-sigma = [0.4, 0.2]
-gamma = 3.0
-theta = [0.05, -0.1, 0.5]
-
-[[material]]
-name = \"paint\"
-distribution = \"gtr\"
-c = 0.2
-gamma = 1.5
-";
+use crate::sets::{draft, recipe};
 
 /// A set with a lobe of each kind. GGX is left to its closed forms.
-fn set() -> Tables {
-    let scene = Scene::from_recipe_str(RECIPE).unwrap();
-    let plan = Plan::new(&scene, Options::default()).unwrap();
-    bake(&plan, Target::Quality(Quality::Draft, Precision::F32)).unwrap().set
-}
+static SET: LazyLock<Tables> = LazyLock::new(|| {
+    let family = recipe(&[
+        ["glass", "[0.3, 0.5]", "3.0", ""],
+        ["steel", "0.2", "2.0", ""],
+        ["brushed", "[0.4, 0.2]", "3.0", "theta = [0.05, -0.1, 0.5]"],
+    ]);
+    let paint = "[[material]]\nname = \"paint\"\ndistribution = \"gtr\"\nc = 0.2\ngamma = 1.5\n";
+    draft(&(family + paint))
+});
 
 fn directions() -> impl Iterator<Item = Vec3> {
     let angles = [0.0, 0.4, 1.0, 1.4, 1.57, 1.7].into_iter();
@@ -56,7 +35,7 @@ const NUMBERS: [[f32; 2]; 5] = [[0.0, 0.5], [0.2, 0.9], [0.5, 0.5], [0.8, 0.1], 
 
 #[test]
 fn a_name_gives_the_lobe_that_the_recipe_states() {
-    let set = set();
+    let set = &*SET;
     assert!(matches!(set.material("glass"), Ok(Lobe::StudentT(_))));
     assert!(matches!(set.material("steel"), Ok(Lobe::Ggx(_))));
     assert!(matches!(set.material("brushed"), Ok(Lobe::Ellipsoid(_))));
@@ -66,9 +45,8 @@ fn a_name_gives_the_lobe_that_the_recipe_states() {
 
 #[test]
 fn the_laws_hold_for_every_lobe() {
-    let set = set();
     for name in ["glass", "steel", "brushed", "paint"] {
-        let lobe = set.material(name).unwrap();
+        let lobe = SET.material(name).unwrap();
         let dynamic: &dyn MicrofacetDistribution = &lobe;
         for v in directions() {
             let g1 = lobe.g1(v);
@@ -181,7 +159,7 @@ fn both_precisions_mean_the_same() {
     // A distribution outside the family has tables of its own.
     let gtr = Gtr::new(0.2, 1.5).unwrap();
     let truth = model::classic::Radial::new(&gtr);
-    let [g1, .., weight] = apart(&set().material("paint").unwrap(), &truth);
+    let [g1, .., weight] = apart(&SET.material("paint").unwrap(), &truth);
     assert!(g1 < 1e-5 && weight < 1e-5, "{g1} {weight}");
     // It can fail: another roughness is another lobe.
     let other = model::StudentT::new(0.301, 2.0).unwrap();
@@ -208,7 +186,7 @@ fn narrow_lobes_say_that_they_are_mirrors() {
 fn an_ellipsoid_knows_the_density_of_its_samples() {
     let tables = Tables::embedded();
     // Coarse tables show what the analytic density does not have: that of the set above is draft.
-    let draft = set().material("brushed").unwrap();
+    let draft = SET.material("brushed").unwrap();
     for gamma in [1.6, 3.0] {
         let straight = tables.ellipsoid(Skew::new([0.3, 0.5], [0.0; 3]).unwrap(), gamma).unwrap();
         let same = tables.student_t([0.3, 0.5], gamma).unwrap();
@@ -241,7 +219,6 @@ fn an_ellipsoid_knows_the_density_of_its_samples() {
 /// their quotient would be anything.
 #[test]
 fn weights_of_grazing_views_are_those_of_the_model() {
-    let set = set();
     let skew = Skew::new([0.4, 0.2], [0.05, -0.1, 0.5]).unwrap();
     let truth: [(&str, Box<dyn model::MicrofacetDistribution>); 3] = [
         ("glass", Box::new(model::StudentT::new([0.3_f32, 0.5], 3.0).unwrap())),
@@ -254,13 +231,13 @@ fn weights_of_grazing_views_are_those_of_the_model() {
             for l in directions().filter(|l| l.z > 0.01) {
                 for masking in Masking::ALL {
                     for (name, truth) in &truth {
-                        let lobe = set.material(name).unwrap();
+                        let lobe = SET.material(name).unwrap();
                         let weight = f64::from(lobe.reflection_weight(v, l, masking));
                         let want = truth.reflection_weight(v.as_dvec3(), l.as_dvec3(), masking);
                         let close = (weight - want).abs() < 2e-3;
                         assert!(close && weight <= 1.0 + 1e-6, "{name} {v} {l}: {weight} {want}");
                     }
-                    let paint = set.material("paint").unwrap().reflection_weight(v, l, masking);
+                    let paint = SET.material("paint").unwrap().reflection_weight(v, l, masking);
                     assert!((0.0..=1.0 + 1e-6).contains(&paint), "{v} {l}: {paint}");
                 }
             }

@@ -6,7 +6,7 @@ use microfacet_report::words::command::query;
 use microfacet_sampler::Tables;
 use microfacet_tables::Kind;
 use microfacet_validate::stress;
-use microfacet_validate::stress::Report;
+use microfacet_validate::stress::{Report, Violation};
 
 /// Errors that the documentation promises for σ ∈ [1e-4, 10]: G1, D, visible density, CDF; see
 /// `docs/reliability.md`.
@@ -17,13 +17,8 @@ fn a_million_points_break_no_rule() {
     let report = stress::run(&Tables::embedded(), 1_000_000, 1, &Stage::unwatched()).unwrap();
     let total = report.total();
     assert!(total.points >= 1_000_000);
-    if let Some((rule, found)) = total.violations.iter().next() {
-        panic!(
-            "{rule}: {} times, first {:e} at\n{}",
-            found.count,
-            found.worst.value,
-            query(&found.worst.at)
-        );
+    if let Some((rule, Violation { count, worst })) = total.violations.iter().next() {
+        panic!("{rule}: {count} times, first {:e} at\n{}", worst.value, query(&worst.at));
     }
     for region in report.regions.as_flattened().iter().map(|by_sigma| &by_sigma[0]) {
         for ((worst, promised), name) in region.errors.iter().zip(PROMISED).zip(stress::ERRORS) {
@@ -46,13 +41,12 @@ fn damaged(kind: Kind, damage: impl Fn(usize, &mut f32)) -> Report {
 #[test]
 fn damaged_tables_are_caught() {
     // Every other node of G1/q two per cent too large.
-    let total =
-        damaged(Kind::Shadowing, |i, value| *value *= if i % 4 == 0 { 1.02 } else { 1.0 }).total();
+    let larger = |i, value: &mut f32| *value *= if i % 4 == 0 { 1.02 } else { 1.0 };
+    let total = damaged(Kind::Shadowing, larger).total();
     assert!(total.violations.contains_key("g1 rises with theta"), "{total:?}");
     assert!(total.errors[0].value > 1e-3);
     // All tilts a thousandth closer to the end.
-    let total =
-        damaged(Kind::VisibleSlope, |i, value| *value *= if i % 2 == 0 { 0.999 } else { 1.0 })
-            .total();
+    let closer = |i, value: &mut f32| *value *= if i % 2 == 0 { 0.999 } else { 1.0 };
+    let total = damaged(Kind::VisibleSlope, closer).total();
     assert!(total.errors[3].value > PROMISED[3], "{total:?}");
 }
