@@ -16,10 +16,8 @@ type Module = Vec<String>;
 #[derive(Default)]
 struct Source {
     file: PathBuf,
-    /// Imports, each with the name that it has here and its line.
-    uses: Vec<(Module, String, usize)>,
-    /// Other paths with their lines.
-    paths: Vec<(Module, usize)>,
+    /// Paths with their lines, those of imports with the name that each has here.
+    uses: Vec<(Module, Option<String>, usize)>,
 }
 
 /// An import from one file of another.
@@ -126,7 +124,7 @@ impl Source {
                     path.push(name.clone());
                     i += 2;
                 }
-                self.paths.push((path, *line));
+                self.uses.push((path, None, *line));
             }
             i += 1;
         }
@@ -146,7 +144,7 @@ impl Source {
                 }
                 "::" => i += 1,
                 "as" => {
-                    self.uses.push((path, tokens[i + 1].0.clone(), line));
+                    self.uses.push((path, Some(tokens[i + 1].0.clone()), line));
                     return i + 2;
                 }
                 name if is_name(name) || name == "*" => {
@@ -156,7 +154,7 @@ impl Source {
                     i += 1;
                 }
                 _ => {
-                    let name = path.last().cloned().unwrap_or_default();
+                    let name = path.last().cloned();
                     self.uses.push((path, name, line));
                     return i;
                 }
@@ -225,12 +223,11 @@ fn tokens(text: &str) -> Vec<(String, usize)> {
 fn arrows(sources: &BTreeMap<Module, Source>) -> Vec<Arrow> {
     let mut arrows = Vec::new();
     for (from, source) in sources {
-        let uses = source.uses.iter().map(|(path, _, line)| (path, line));
-        for (path, &line) in uses.chain(source.paths.iter().map(|(path, line)| (path, line))) {
+        for (path, _, line) in &source.uses {
             if let Some(to) = defined(sources, from, path, 0)
                 && to != *from
             {
-                arrows.push(Arrow { from: from.clone(), to, line });
+                arrows.push(Arrow { from: from.clone(), to, line: *line });
             }
         }
     }
@@ -268,7 +265,7 @@ fn defined(
     }
     let passed = |name: &String| {
         let source = sources.get(&module)?;
-        let (path, ..) = source.uses.iter().find(|(_, known, _)| known == name)?;
+        let (path, ..) = source.uses.iter().find(|(_, known, _)| known.as_ref() == Some(name))?;
         defined(sources, &module, path, depth + 1)
     };
     match rest.first() {

@@ -122,8 +122,8 @@ struct Case<'a> {
     answer: &'a Answer,
 }
 
-/// What the crate says of the albedos of one roughness, under both forms of masking: of the stand-in,
-/// within the range of the tables. Nothing of a mirror, which σ ≤ 0 is to exports.
+/// What the crate says of the albedos of one roughness, under both forms of masking: those of the
+/// stand-in, within the range of the tables. Nothing of a mirror, which σ ≤ 0 is to exports.
 fn albedos(tables: &Tables, sigma: [f32; 2], gamma: f64) -> Option<[Albedo; 2]> {
     if !sigma.iter().all(|sigma| *sigma > 0.0) {
         return None;

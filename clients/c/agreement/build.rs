@@ -1,7 +1,7 @@
 //! Compiles the lookups of the shapes in the folder `STUDENT_T_HEADERS`, as C and as C++.
 
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::{env, fs};
 
 fn main() {
@@ -31,24 +31,15 @@ fn main() {
     let gammas: Vec<String> = names.iter().map(|name| name.replace('p', ".")).collect();
     fs::write(out.join("gammas.txt"), gammas.join("\n")).unwrap();
 
+    // As a careful user would: optimised, without relaxed arithmetic, every warning an error.
     for (cpp, standard, prefix) in [(false, "c99", "c_"), (true, "c++11", "cpp_")] {
-        compile(cpp, standard, prefix, &[&folder, &out]);
+        let mut build = cc::Build::new();
+        build.cpp(cpp).opt_level(2).std(standard).warnings_into_errors(true).extra_warnings(true);
+        build.flag_if_supported("-Wpedantic").flag_if_supported("-Wconversion");
+        if cpp {
+            build.flag("-xc++");
+        }
+        build.define("PREFIX", prefix).includes([&folder, &out]).file("src/lookups.c");
+        build.compile(&format!("{prefix}lookups"));
     }
-}
-
-/// As a careful user would: optimised, without relaxed arithmetic, every warning an error.
-fn compile(cpp: bool, standard: &str, prefix: &str, include: &[&Path]) {
-    let mut build = cc::Build::new();
-    build.cpp(cpp).opt_level(2).std(standard).warnings_into_errors(true).extra_warnings(true);
-    build.flag_if_supported("-Wpedantic").flag_if_supported("-Wconversion");
-    build.define("PREFIX", prefix).includes(include);
-    let file = Path::new("src/lookups.c");
-    if cpp {
-        let copy = PathBuf::from(env::var_os("OUT_DIR").unwrap()).join("lookups.cpp");
-        fs::copy(file, &copy).unwrap();
-        build.file(copy);
-    } else {
-        build.file(file);
-    }
-    build.compile(&format!("{prefix}lookups"));
 }

@@ -1,6 +1,6 @@
 //! Lobes in single precision, by tables.
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use bytemuck::cast_slice;
 use glam::Vec3;
@@ -13,8 +13,13 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Any, Cost};
 use crate::distribution::{Kind, PyDistribution, View, azimuth_matters};
-use crate::tables::embedded;
 use crate::words::{self, refused, unbound};
+
+/// The set compiled in.
+pub(crate) fn embedded() -> Arc<Tables> {
+    static EMBEDDED: LazyLock<Arc<Tables>> = LazyLock::new(|| Arc::new(Tables::embedded()));
+    Arc::clone(&EMBEDDED)
+}
 
 /// A lobe with the tables that it is from: any distribution of microfacet normals.
 ///

@@ -1,7 +1,7 @@
 //! Sets of tables: loaded, baked and described.
 
 use std::path::PathBuf;
-use std::sync::{Arc, LazyLock};
+use std::sync::Arc;
 use std::thread;
 use std::time::Duration;
 
@@ -18,18 +18,12 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Any, has_threads};
 use crate::bsdf::PyBsdf;
-use crate::lobe::{PyEllipsoid, PyLobe, PyStudentT};
+use crate::lobe::{PyEllipsoid, PyLobe, PyStudentT, embedded};
 use crate::shape::{PyDielectricAlbedo, PyShape};
 use crate::words::{self, one_of, refused, unbound, unread, unscened};
 
 /// How long an interrupt waits for its answer while a bake runs.
 const PATIENCE: Duration = Duration::from_millis(20);
-
-/// The set compiled in.
-pub(crate) fn embedded() -> Arc<Tables> {
-    static EMBEDDED: LazyLock<Arc<Tables>> = LazyLock::new(|| Arc::new(Tables::embedded()));
-    Arc::clone(&EMBEDDED)
-}
 
 /// A set of tables: those built in, or of a file or folder that `microfacet-bake bake` wrote.
 ///

@@ -28,9 +28,6 @@ pub(crate) struct Stop {
 
 /// Searches for a minimum near `start`, within `h` in one coordinate, from a simplex of sides 0.4 h
 /// in two, and returns where it is. A cost that is no number counts as `f64::MAX`.
-///
-/// # Errors
-/// The minimiser's message.
 pub(crate) fn descend(
     start: &[f64],
     h: f64,

@@ -28,9 +28,6 @@ const FUNCTIONS: &str = concat!(
 );
 
 /// The module, a program that uses it, and the data.
-///
-/// # Panics
-/// If there are no shapes.
 pub(super) fn files(language: Language, storage: Storage, shapes: &[Shape]) -> Vec<ExportFile> {
     let storage = language.storage(storage);
     let module = module(&shapes.first().expect("shapes").lists(), storage);

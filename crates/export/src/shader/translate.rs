@@ -15,9 +15,6 @@ use super::{Language, Storage};
 const ENTRY: &str = "student_t_impl_entry";
 
 /// A module of functions as text.
-///
-/// # Panics
-/// For SPIR-V, which has none.
 pub(super) fn text(wgsl: &str, language: Language, storage: Storage) -> String {
     let stage =
         if language == Language::GlslEs { "fragment" } else { "compute @workgroup_size(1)" };

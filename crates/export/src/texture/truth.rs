@@ -78,9 +78,6 @@ pub struct Truth {
 }
 
 /// The albedos of `count` places, each a step of the stage; all of them views, or all averages.
-///
-/// # Errors
-/// [`ParameterError`] for a place outside the domain of the model.
 pub(super) fn truths(
     count: usize,
     place: impl Fn(usize) -> Place + Sync,

@@ -44,9 +44,6 @@ impl<'a> Problem<'a> {
     }
 
     /// Whether there is something to fit.
-    ///
-    /// # Errors
-    /// [`MerlError::Missing`], [`MerlError::Black`] and [`MerlError::Dark`].
     pub(super) fn check(&self) -> Result<(), MerlError> {
         let missing = |values: &Vec<f64>| values.iter().all(|y| *y < 0.0);
         if let Some(channel) = self.values.iter().position(missing) {

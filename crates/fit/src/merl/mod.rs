@@ -68,12 +68,6 @@ impl Fitted {
         };
         [self.lobe.values[0], gamma]
     }
-
-    /// The same fit under the name of the family.
-    fn as_student_t(&self) -> Self {
-        let lobe = Named { kind: DistributionKind::StudentT, values: self.sigma_gamma().into() };
-        Self { lobe, ..self.clone() }
-    }
 }
 
 /// The fits of the three distributions to one material.

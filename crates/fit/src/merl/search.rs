@@ -93,7 +93,9 @@ impl Fitter {
             if other.error < student_t.error {
                 let kind = DistributionKind::StudentT;
                 let near = all.fitted(kind, &all.descend(kind, &at, 0.02, TOLERANCES[2])?);
-                student_t = if near.error < other.error { near } else { other.as_student_t() };
+                let lobe = Named { kind, values: other.sigma_gamma().into() };
+                let same = Fitted { lobe, ..other.clone() };
+                student_t = if near.error < other.error { near } else { same };
             }
         }
         Ok(Comparison { beckmann, ggx, student_t })
