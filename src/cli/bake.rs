@@ -13,17 +13,21 @@ use serde_json::{Value, json};
 use microfacet_baker::cache::Cache;
 use microfacet_baker::input::MAX_TABLES;
 use microfacet_baker::library::{Library, Part, Shard};
-use microfacet_baker::plan::{Plan, set_cost};
+use microfacet_baker::plan::{Cost, Plan};
 use microfacet_baker::progress::Meter;
 use microfacet_baker::scene::Scene;
 use microfacet_baker::store::{Format, OutputFolder, Written};
-use microfacet_baker::table_set::{Baked, Settings, Target, bake_with};
+use microfacet_baker::table_set::{
+    BakeError, Baked, Settings, Target, bake_with, costs, smallest_bytes,
+};
 
 use super::plan::{Outline, remind};
 use super::request::Request;
 use super::values::{self, Named, named, number};
 use super::words::shell;
-use super::{Result, ensure, interrupt, is_stream, print_json, progress, summarize, warn};
+use super::{
+    Failure, Result, anyhow, ensure, interrupt, is_stream, print_json, progress, summarize, warn,
+};
 use summary::Summary;
 
 const FORMATS: [Named<Format>; 2] = [
@@ -133,7 +137,8 @@ impl Args {
     /// Refuses a set that could not be read back, before hours are spent on it.
     fn check_bytes(&self, plan: &Plan) -> Result<()> {
         let Target::Quality(quality, precision) = self.target() else { return Ok(()) };
-        let bytes = set_cost(plan, quality, precision)?.bytes as u64;
+        let cost: Cost = costs(plan, quality, precision)?.into_iter().sum();
+        let bytes = cost.bytes as u64;
         ensure!(
             bytes <= MAX_TABLES,
             "the set would have about {} MiB, and at most {} MiB are read back: bake fewer \
@@ -142,6 +147,22 @@ impl Args {
             MAX_TABLES >> 20
         );
         Ok(())
+    }
+
+    /// Why a bake was refused; if its bytes are too few, with the options by which they suffice.
+    fn refused(&self, scene: &Scene, why: BakeError) -> Failure {
+        let BakeError::TooSmall { max_bytes, .. } = why else { return why.into() };
+        let fits = self.request.without().into_iter().filter_map(|(option, options)| {
+            let plan = Plan::new(scene, options).ok()?;
+            let bytes = smallest_bytes(&plan).ok().filter(|bytes| *bytes <= max_bytes)?;
+            Some(format!("{option} (about {bytes} bytes)"))
+        });
+        let fits: Vec<String> = fits.collect();
+        if fits.is_empty() {
+            why.into()
+        } else {
+            anyhow!("{why}; what fits: {}", fits.join(", or "))
+        }
     }
 
     /// What a bake leaves if it is interrupted.
@@ -216,8 +237,9 @@ pub(super) fn run(args: &Args) -> Result<()> {
     args.check_bytes(plan)?;
     let settings = args.settings(cache);
     let bar = progress::show(&settings.progress, "baking");
-    let result = bake_with(plan, args.target(), settings)?;
+    let result = bake_with(plan, args.target(), settings).map_err(|why| args.refused(scene, why));
     drop(bar);
+    let result = result?;
     warn_of_cache(&result);
     let written = match args.split && !result.set.tables().is_empty() {
         true => out.write_images(&result.set)?,

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 use std::io::{self, IsTerminal};
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::sync::{Arc, Mutex};
+use std::sync::Mutex;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
@@ -20,70 +20,60 @@ const TICK: Duration = Duration::from_millis(100);
 const DELAY: Duration = Duration::from_millis(300);
 /// Steps of the bar.
 const LENGTH: u64 = 1000;
+/// Steps after which the rest is estimated: the first parts of a stage may be unlike the others.
+const FIRST: u64 = LENGTH / 100;
 
 /// A bar that follows a meter until it is dropped.
-pub(super) struct Bar {
-    ended: Arc<AtomicBool>,
-    thread: Option<JoinHandle<()>>,
-}
+pub(super) struct Bar(Option<(Sender<()>, JoinHandle<()>)>);
 
 /// Shows a meter, on a terminal only; `what` names the work.
 pub(super) fn show(meter: &Meter, what: &'static str) -> Bar {
-    let ended = Arc::new(AtomicBool::new(false));
     if super::is_quiet() || !io::stderr().is_terminal() {
-        return Bar { ended, thread: None };
+        return Bar(None);
     }
-    let (meter, end) = (meter.clone(), ended.clone());
+    let (end, ended) = channel::<()>();
+    let waits = move |time| ended.recv_timeout(time) == Err(RecvTimeoutError::Timeout);
+    let meter = meter.clone();
     let draw = move || {
-        let start = Instant::now();
-        while !end.load(Relaxed) && start.elapsed() < DELAY {
-            std::thread::park_timeout(DELAY);
-        }
-        if end.load(Relaxed) {
+        if !waits(DELAY) {
             return;
         }
-        let bar = bar(&meter, start).with_message(what);
-        // Nobody knows the length of a stream.
-        if !meter.is_known() {
-            bar.set_style(
-                ProgressStyle::with_template("{spinner} {msg}, {elapsed}")
-                    .expect("a constant template"),
-            );
-        }
+        let bar = ProgressBar::new(LENGTH).with_style(style(meter.is_known())).with_message(what);
         if let Ok(mut shown) = SHOWN.lock() {
             *shown = Some(bar.clone());
         }
-        while !end.load(Relaxed) {
+        while waits(TICK) {
             // More work may turn up, as where tables are refined: the bar waits for it.
             let position = (LENGTH as f64 * meter.share()) as u64;
             bar.set_position(position.max(bar.position()));
-            std::thread::park_timeout(TICK);
+            bar.tick();
         }
         hide();
     };
     // The work goes on without a bar where no thread can be started.
-    Bar { ended, thread: std::thread::Builder::new().spawn(draw).ok() }
+    Bar(std::thread::Builder::new().spawn(draw).ok().map(|thread| (end, thread)))
 }
 
-fn bar(meter: &Meter, start: Instant) -> ProgressBar {
-    let meter = meter.clone();
-    let left = move |_: &ProgressState, out: &mut dyn Write| {
+/// The style of a bar; the length of a stream is not known.
+fn style(is_known: bool) -> ProgressStyle {
+    let left = |state: &ProgressState, out: &mut dyn Write| {
         // Writing to a terminal's line cannot usefully fail.
-        let _ = match meter.left(start.elapsed()) {
-            Some(left) => write!(out, "{} left", HumanDuration(left)),
-            None => Ok(()),
+        let _ = match state.pos() {
+            FIRST.. => write!(out, "{} left", HumanDuration(state.eta())),
+            _ => Ok(()),
         };
     };
-    let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} % {left}")
-        .expect("a constant template");
-    ProgressBar::new(LENGTH).with_style(style.with_key("left", left))
+    let template = match is_known {
+        true => "{msg} {wide_bar} {percent:>3} % {left}",
+        false => "{spinner} {msg}, {elapsed}",
+    };
+    ProgressStyle::with_template(template).expect("a constant template").with_key("left", left)
 }
 
 impl Drop for Bar {
     fn drop(&mut self) {
-        self.ended.store(true, Relaxed);
-        if let Some(thread) = self.thread.take() {
-            thread.thread().unpark();
+        if let Some((end, thread)) = self.0.take() {
+            drop(end);
             // A panic there has nothing to do with the work.
             let _ = thread.join();
         }

@@ -29,7 +29,7 @@ const QUALITIES: [Named<Quality>; 3] = [
     ),
 ];
 
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 pub(super) struct Request {
     /// Precision of the stored values.
     #[arg(long, value_parser = named(&PRECISIONS), default_value = "f32")]
@@ -127,6 +127,20 @@ impl Request {
     /// What a survey plans with: materials of a set, and options.
     pub(super) fn planning(&self) -> Result<(usize, Options)> {
         Ok((self.per_set, self.options(None)?))
+    }
+
+    /// Options that leave tables out, each with what the scene is planned with if it is added.
+    pub(super) fn without(&self) -> Vec<(&'static str, Options)> {
+        let add = |name, change: fn(&mut Self)| {
+            let mut request = self.clone();
+            change(&mut request);
+            Some((name, request.options(None).ok()?))
+        };
+        let all = [
+            (!self.embedded).then(|| add("--embedded", |it| it.embedded = true)),
+            (!self.no_albedo && !self.albedo).then(|| add("--no-albedo", |it| it.no_albedo = true)),
+        ];
+        all.into_iter().flatten().flatten().collect()
     }
 
     fn options(&self, max_error: Option<f64>) -> Result<Options> {

@@ -4,12 +4,10 @@
 use glam::Vec3;
 use microfacet_baker::bake::albedo;
 use microfacet_baker::bake::albedo::{AlbedoLobe, AlbedoSpec, Integrand, Models, Site};
-use microfacet_baker::plan::{
-    AlbedoVerdict, AlbedoWish, Cost, Options, Plan, RequiredAlbedo, albedo_costs, bare_cost,
-};
+use microfacet_baker::plan::{AlbedoVerdict, AlbedoWish, Cost, Options, Plan, RequiredAlbedo};
 use microfacet_baker::scene::Scene;
 use microfacet_baker::store;
-use microfacet_baker::table_set::{Settings, Target, bake, bake_with};
+use microfacet_baker::table_set::{Settings, Target, bake, bake_with, costs};
 use microfacet_baker::table_spec::Quality;
 use microfacet_model::fresnel::{Conductor, Dielectric};
 use microfacet_model::{AlbedoIntegrator, Shape};
@@ -260,10 +258,8 @@ fn estimated_bytes_are_those_of_the_file() {
     // Without the albedo whose views are refined.
     let plan = albedos_of(&MIXED[..4]);
     let set = bake(&plan, DRAFT).unwrap().set;
-    let spec = |need: &RequiredAlbedo| need.spec(Quality::Draft, Precision::F32).unwrap();
-    let specs: Vec<_> = plan.albedos.iter().map(spec).collect();
-    let tables = albedo_costs(&specs).into_iter().sum::<Cost>().bytes;
-    let estimate = (tables + bare_cost(set.provenance()).bytes) as f64;
+    let estimate = costs(&plan, Quality::Draft, Precision::F32).unwrap();
+    let estimate = estimate.into_iter().sum::<Cost>().bytes as f64;
     let real = encode(set.provenance(), set.tables()).unwrap().len() as f64;
     assert!((estimate / real - 1.0).abs() < 0.04, "{estimate} for {real}");
 }

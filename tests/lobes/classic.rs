@@ -10,11 +10,11 @@ use glam::{DVec3, Vec3};
 use microfacet_baker::bake::bake_radial;
 use microfacet_baker::certify::radial::measure;
 use microfacet_baker::distribution::Named;
-use microfacet_baker::plan::{Cost, Options, Plan, bare_cost, cost, distribution_cost};
+use microfacet_baker::plan::{Cost, Options, Plan};
 use microfacet_baker::progress::Stage;
 use microfacet_baker::scene::Scene;
-use microfacet_baker::table_set::{Target, bake};
-use microfacet_baker::table_spec::{Quality, general_set};
+use microfacet_baker::table_set::{Target, bake, costs};
+use microfacet_baker::table_spec::Quality;
 use microfacet_model::classic::{Isotropic, Marginal, MarginalView, Tabulated};
 use microfacet_model::statistics::{chi_square, sidak};
 use microfacet_sampler::{Lobe, MicrofacetDistribution, Tables};
@@ -146,11 +146,7 @@ fn a_recipe_bakes_all_kinds() {
     let [full, fixed] = [Precision::F32, Precision::U16]
         .map(|precision| bake(Target::Quality(Quality::Draft, precision)).unwrap().set);
     for (precision, set) in [(Precision::F32, &full), (Precision::U16, &fixed)] {
-        let general = general_set(Quality::Draft, precision);
-        let normals = plan.shapes.iter().map(|need| cost(&need.specs(&general)));
-        let own =
-            plan.distributions.iter().map(|own| distribution_cost(own, Quality::Draft, precision));
-        let estimate: Cost = normals.chain(own).chain([bare_cost(set.provenance())]).sum();
+        let estimate: Cost = costs(&plan, Quality::Draft, precision).unwrap().into_iter().sum();
         let real = encode(set.provenance(), set.tables()).unwrap().len() as f64;
         assert!((estimate.bytes as f64 / real - 1.0).abs() < 0.02, "{estimate:?} for {real}");
         assert!(estimate.seconds > 0.0);

@@ -8,6 +8,8 @@ use microfacet_baker::table_set::{BakeError, Baked, Settings, Target, bake_with}
 use microfacet_sampler::Tables;
 use microfacet_tables::{Precision, Table, encode};
 
+use crate::common::{ok, refused};
+
 const GOLD: &str =
     "[[material]]\nname = \"gold\"\nsigma = 0.3\ngamma = 2.0\nfresnel = \"mirror\"\n";
 const CLOTH: &str = "[[material]]\nname = \"cloth\"\ndistribution = \"gauss\"\nm = 0.25\n";
@@ -37,8 +39,15 @@ fn all_kinds_of_tables_share_a_budget() {
     let cache = Cache::new(folder.path().into());
     let recipe = [GOLD, CLOTH, GLASS].concat();
     let refused = within(&recipe, 1000, &cache).unwrap_err();
-    let BakeError::TooSmall { max_bytes: 1000, smallest } = refused else { panic!("{refused}") };
-    assert!(refused.to_string().contains(&smallest.to_string()), "{refused}");
+    let BakeError::TooSmall { max_bytes: 1000, smallest: planned, planned: true } = refused else {
+        panic!("{refused}")
+    };
+    assert!(refused.to_string().contains(&format!("about {planned}")), "{refused}");
+    assert!(std::fs::read_dir(folder.path()).unwrap().next().is_none(), "tables were baked");
+    // Close to what is planned the smallest set is baked, and its file decides.
+    let refused = within(&recipe, planned * 961 / 1000, &cache).unwrap_err();
+    let BakeError::TooSmall { smallest, planned: false, .. } = refused else { panic!("{refused}") };
+    assert!(smallest.abs_diff(planned) < planned / 25, "{smallest} where {planned} were planned");
     assert!(matches!(within(&recipe, smallest - 1, &cache), Err(BakeError::TooSmall { .. })));
 
     let mut before = f64::INFINITY;
@@ -76,4 +85,34 @@ fn without_visible_normals_the_tables_in_grades_are_all_there_is() {
     let large = at(100_000);
     assert!(bytes(&large).len() <= 100_000);
     assert!(3.0 * worst(large.tables().iter()) < worst(small.tables().iter()));
+}
+
+#[test]
+fn too_few_bytes_are_refused_before_any_work_with_the_options_that_fit() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let recipe = |name: &str, one: fn(usize) -> String| {
+        let all: String =
+            (0..8).map(|i| format!("[[material]]\nname = \"{i}\"\n{}\n", one(i))).collect();
+        std::fs::write(at.join(name), all).unwrap();
+    };
+    recipe("brushed.toml", |i| format!("sigma = [0.1{i}, 0.3]\ngamma = 3.0\nfresnel = \"mirror\""));
+    recipe("shapes.toml", |i| format!("sigma = 0.3\ngamma = {}", 3 + i));
+    for (scene, fits, not) in [
+        ("brushed.toml", "--no-albedo", "--embedded"),
+        ("shapes.toml", "--embedded", "--no-albedo"),
+    ] {
+        let bake = ["bake", scene, "--max-bytes", "9000", "--cache", "cache", "--out", "out"];
+        let said = refused(at, &bake);
+        assert!(said.contains(&format!("what fits: {fits} (about ")), "{said}");
+        assert!(said.contains("fits into 9000 bytes") && !said.contains(not), "{said}");
+        assert!(!at.join("cache").exists() && !at.join("out").exists());
+        ok(at, &[&bake[..], &[fits]].concat());
+        assert!(std::fs::metadata(at.join("out/tables.safetensors")).unwrap().len() <= 9000);
+        std::fs::remove_dir_all(at.join("out")).unwrap();
+        let _ = std::fs::remove_dir_all(at.join("cache"));
+    }
+    // Nothing fits into a hundred bytes.
+    let none = refused(at, &["bake", "shapes.toml", "--max-bytes", "100", "--out", "out"]);
+    assert!(none.contains("100 bytes") && !none.contains("what fits"), "{none}");
 }

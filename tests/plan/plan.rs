@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 use microfacet_baker::cache::Cache;
-use microfacet_baker::plan::{Options, Plan, Verdict, bare_cost, cost};
+use microfacet_baker::plan::{Cost, Options, Plan, Verdict};
 use microfacet_baker::scene::Scene;
-use microfacet_baker::table_set::{BakeError, Baked, Settings, Target, bake_with};
+use microfacet_baker::table_set::{BakeError, Baked, Settings, Target, bake_with, costs};
 use microfacet_baker::table_spec::{Quality, general_set};
 use microfacet_sampler::{DEFAULT_SET as GENERAL, Lobe, Masking, MicrofacetDistribution, Tables};
 use microfacet_tables::{
@@ -42,6 +42,11 @@ fn normals_of(plan: &Plan) -> Plan {
 
 fn bytes(set: &Tables) -> Vec<u8> {
     encode(set.provenance(), set.tables()).unwrap()
+}
+
+/// The largest error of any table.
+fn worst(set: &Tables) -> f64 {
+    set.tables().iter().map(|table| table.certificate.worst()).fold(0.0, f64::max)
 }
 
 const MIXED: [[&str; 3]; 9] = [
@@ -139,9 +144,6 @@ fn sub_ranges_draw_the_very_normals_of_the_general_set() {
         }
         // And it is no less accurate: its certificate is about the range asked for, without the
         // margins.
-        let worst = |set: &Tables| {
-            set.tables().iter().map(|table| table.certificate.worst()).fold(0.0, f64::max)
-        };
         assert!(
             worst(&part) <= worst(&general) * 1.01,
             "{range}: {} {}",
@@ -185,16 +187,13 @@ fn more_shapes_than_a_range_has_nodes_are_a_range() {
 #[test]
 fn estimated_bytes_are_those_of_the_file() {
     for materials in [&MIXED[..2], &MIXED[..]] {
-        let plan = plan(&scene(materials));
+        let plan = normals_of(&plan(&scene(materials)));
         for precision in [Precision::F32, Precision::U16] {
-            let general = general_set(Quality::Draft, precision);
-            let specs: Vec<_> = plan.shapes.iter().flat_map(|need| need.specs(&general)).collect();
             let target = Target::Quality(Quality::Draft, precision);
             let set = bake(&plan, target, &Cache::none()).unwrap().set;
-            let (estimate, real) = (
-                (cost(&specs).bytes + bare_cost(&plan.provenance()).bytes) as f64,
-                bytes(&set).len() as f64,
-            );
+            let all = costs(&plan, Quality::Draft, precision).unwrap();
+            let estimate = all.into_iter().sum::<Cost>().bytes as f64;
+            let real = bytes(&set).len() as f64;
             assert!((estimate / real - 1.0).abs() < 0.04, "{estimate} for {real}");
         }
     }
@@ -303,9 +302,6 @@ fn an_error_budget_is_met_by_less() {
     let plan = plan(&scene(&[["glass", "0.454", "3.0"]]));
     let at = |target| bake(&plan, target, &Cache::none()).unwrap().set;
     let default = at(Target::Quality(Quality::Default, Precision::F32));
-    let worst = |set: &Tables| {
-        set.tables().iter().map(|table| table.certificate.worst()).fold(0.0, f64::max)
-    };
     let mut before = bytes(&default).len();
     for max_error in [1e-4, 1e-3, 1e-2] {
         let set = at(Target::MaxError(max_error));
@@ -328,9 +324,6 @@ fn an_error_budget_is_met_by_less() {
 #[test]
 fn budgets_of_the_general_set_end() {
     let plan = normals_of(&Plan::general());
-    let worst = |set: &Tables| {
-        set.tables().iter().map(|table| table.certificate.worst()).fold(0.0, f64::max)
-    };
     let met = bake(&plan, Target::MaxError(2e-3), &Cache::none()).unwrap().set;
     assert!(met.tables().len() == 5 && worst(&met) <= 2e-3, "{}", worst(&met));
     let filled = bake(&plan, Target::MaxBytes(100_000), &Cache::none()).unwrap().set;
@@ -364,9 +357,6 @@ fn what_would_take_long_says_so_before_anything_is_baked() {
 fn a_byte_budget_is_filled_and_not_exceeded() {
     let plan = plan(&scene(&[["glass", "0.454", "3.0"]]));
     let at = |max_bytes| bake(&plan, Target::MaxBytes(max_bytes), &Cache::none());
-    let worst = |set: &Tables| {
-        set.tables().iter().map(|table| table.certificate.worst()).fold(0.0, f64::max)
-    };
     let [small, large] = [5_000, 8_000].map(|limit| {
         let set = at(limit).unwrap().set;
         assert!(bytes(&set).len() <= limit);

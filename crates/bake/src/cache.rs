@@ -79,18 +79,15 @@ impl Cache {
     /// Any error of the operating system, such as a folder that cannot be written.
     pub fn put(&self, key: &str, tables: &[Table]) -> io::Result<()> {
         let key = complete(key);
-        let (Some(path), Some(folder)) = (self.path(&key), &self.folder) else { return Ok(()) };
+        let Some(folder) = &self.folder else { return Ok(()) };
+        let name = name_of(&key);
         let provenance = Provenance { key, numerics: NUMERICS, ..Provenance::default() };
         let bytes = encode(&provenance, tables).map_err(io::Error::other)?;
-        let at = |path: &Path, why: io::Error| {
-            io::Error::new(why.kind(), format!("{}: {why}", path.display()))
-        };
-        make_folder(folder).map_err(|why| at(folder, why))?;
+        write_in(folder, &name, &bytes)?;
         // It lists the folder, which may hold very many entries.
         if !self.tidied.swap(true, Relaxed) {
             remove_abandoned(folder);
         }
-        in_folder(folder, || replace(&path, &bytes)).map_err(|why| at(&path, why))?;
         self.kept.store(true, Relaxed);
         Ok(())
     }
@@ -104,8 +101,7 @@ impl Cache {
     }
 
     fn path(&self, key: &str) -> Option<PathBuf> {
-        let name: String = Sha256::digest(key).iter().map(|byte| format!("{byte:02x}")).collect();
-        self.folder.as_ref().map(|folder| folder.join(name).with_extension("safetensors"))
+        self.folder.as_ref().map(|folder| folder.join(name_of(key)))
     }
 }
 
@@ -115,13 +111,29 @@ pub(crate) fn complete(key: &str) -> String {
     // Longer than most keys, and the same for all.
     static HEAD: LazyLock<String> = LazyLock::new(|| {
         let mappings = Mapping::EVERY.map(|mapping| (mapping, mapping.formula()));
-        format!(
-            "{}, {mappings:?}
-",
-            versions()
-        )
+        format!("{}, {mappings:?}\n", versions())
     });
     [HEAD.as_str(), key].concat()
+}
+
+/// The name of the entry of a complete key.
+fn name_of(key: &str) -> String {
+    sha256(key) + ".safetensors"
+}
+
+/// Writes a file into a folder, which is made if it is not there.
+pub(crate) fn write_in(folder: &Path, name: &str, bytes: &[u8]) -> io::Result<()> {
+    let at = |path: &Path, why: io::Error| {
+        io::Error::new(why.kind(), format!("{}: {why}", path.display()))
+    };
+    let path = folder.join(name);
+    make_folder(folder).map_err(|why| at(folder, why))?;
+    in_folder(folder, || replace(&path, bytes)).map_err(|why| at(&path, why))
+}
+
+/// The SHA-256 of a text, in hexadecimal.
+pub(crate) fn sha256(text: &str) -> String {
+    Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// The versions that tables depend on.

@@ -1,7 +1,5 @@
 //! Estimates the memory of a bake before any is taken.
 
-use std::fmt;
-
 use crate::bake::albedo::AlbedoSpec;
 
 /// Bytes held per value while a set is made: the values as they are gathered, rounded and kept, and
@@ -11,7 +9,14 @@ const BYTES_PER_VALUE: u128 = 24;
 const BASE: u128 = 32 << 20;
 
 /// The error for a set that would exceed the memory limit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "baking {values} values would take about {} MiB of memory, more than the {} MiB allowed; ask \
+     for fewer shapes (a range of gamma instead of many single ones), a lower quality, or allow \
+     more",
+    mib(*needed),
+    mib((*limit).into())
+)]
 pub struct TooLarge {
     /// Number of values of all tables together.
     pub values: u128,
@@ -21,21 +26,9 @@ pub struct TooLarge {
     pub limit: u64,
 }
 
-impl fmt::Display for TooLarge {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mib = |bytes: u128| bytes.div_ceil(1 << 20);
-        let Self { values, needed, limit } = *self;
-        write!(
-            f,
-            "baking {values} values would take about {} MiB of memory, more than the {} MiB allowed; ask for fewer shapes (a range of \
-             gamma instead of many single ones), a lower quality, or allow more",
-            mib(needed),
-            mib(limit.into())
-        )
-    }
+fn mib(bytes: u128) -> u128 {
+    bytes.div_ceil(1 << 20)
 }
-
-impl std::error::Error for TooLarge {}
 
 /// Numbers of values of some tables: those that are kept until the set is written, and those that
 /// are held only while these tables are made.

@@ -1,44 +1,40 @@
-//! Progress of long work: what is known to be ahead and what is done, in estimated seconds.
+//! Progress of long work: how much is known to be ahead, and how much is done.
 //!
-//! Whoever starts some work calls [`Meter::expect`] for all of it, so that the share done is a
-//! share of the whole, and hands each function a [`Stage`]. The function splits its stage into
-//! equal parts, such as nodes or points, and counts them from any thread. Another thread may
-//! [read](Meter::share) the meter at any time. The time left follows from the time that the work
-//! done has taken, so the estimates need to be right in proportion only.
+//! What starts some work calls [`Meter::expect`] for all of it, so that the share done is a share
+//! of the whole, and hands each function a [`Stage`]. The function splits its stage into equal
+//! parts, such as nodes or places, and counts them from any thread. Another thread may
+//! [read](Meter::share) the meter at any time. Work has any unit, by which kinds of parts are
+//! weighed against each other, such as planned seconds.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
-use std::time::Duration;
 
 /// Work ahead and work done; clones count the same work.
 #[derive(Clone, Debug, Default)]
 pub struct Meter(Arc<Counts>);
 
-/// Nanoseconds by estimate.
+/// In 1e-9 of the unit of work.
 #[derive(Debug, Default)]
 struct Counts {
     known: AtomicU64,
     done: AtomicU64,
 }
 
-/// Shares below this say little about the rest: a stage's first parts may be unlike the others.
-const FIRST: f64 = 0.01;
-
 impl Meter {
     /// Adds work that lies ahead.
-    pub fn expect(&self, seconds: f64) {
-        self.0.known.fetch_add(nanoseconds(seconds), Relaxed);
+    pub fn expect(&self, work: f64) {
+        self.0.known.fetch_add(counted(work), Relaxed);
     }
 
     /// Takes back work that was expected and need not be done: it was found in a cache.
-    pub fn forget(&self, seconds: f64) {
-        let less = |known: u64| Some(known.saturating_sub(nanoseconds(seconds)));
+    pub fn forget(&self, work: f64) {
+        let less = |known: u64| Some(known.saturating_sub(counted(work)));
         let _ = self.0.known.fetch_update(Relaxed, Relaxed, less);
     }
 
     /// Begins a part of the work that was expected.
-    pub fn stage(&self, seconds: f64) -> Stage {
-        let total = nanoseconds(seconds);
+    pub fn stage(&self, work: f64) -> Stage {
+        let total = counted(work);
         Stage { meter: self.clone(), total, parts: AtomicU64::new(1), counted: AtomicU64::new(0) }
     }
 
@@ -52,18 +48,11 @@ impl Meter {
         let (done, known) = (self.0.done.load(Relaxed), self.0.known.load(Relaxed));
         if known == 0 { 0.0 } else { (done as f64 / known as f64).min(1.0) }
     }
-
-    /// The time left after `elapsed`, if the rest goes on as the work so far; `None` while too
-    /// little is done to tell.
-    pub fn left(&self, elapsed: Duration) -> Option<Duration> {
-        let share = self.share();
-        (share >= FIRST).then(|| elapsed.mul_f64((1.0 - share) / share))
-    }
 }
 
-fn nanoseconds(seconds: f64) -> u64 {
+fn counted(work: f64) -> u64 {
     // A cast takes NaN and negative numbers to 0.
-    (1e9 * seconds) as u64
+    (1e9 * work) as u64
 }
 
 /// A part of the work: counted in equal parts, and done as a whole when it is dropped.
@@ -76,7 +65,7 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// A stage that nobody watches.
+    /// A stage of a meter that is not read.
     pub fn unwatched() -> Self {
         Meter::default().stage(0.0)
     }
@@ -119,25 +108,24 @@ mod tests {
     #[test]
     fn parts_add_up_to_what_was_expected() {
         let meter = Meter::default();
-        assert_eq!((meter.share(), meter.left(Duration::from_secs(1))), (0.0, None));
+        let is_at = |share: f64| assert!((meter.share() - share).abs() < 1e-9, "{share}");
+        is_at(0.0);
         meter.expect(10.0);
         {
             let stage = meter.stage(2.5);
             stage.split(3);
             stage.step();
-            assert!((meter.share() - 0.25 / 3.0).abs() < 1e-9);
+            is_at(0.25 / 3.0);
             // More parts than were announced.
             stage.steps(7);
-            assert!((meter.share() - 0.25).abs() < 1e-9);
+            is_at(0.25);
         }
-        assert!((meter.share() - 0.25).abs() < 1e-9);
-        assert_eq!(meter.left(Duration::from_secs(2)), Some(Duration::from_secs(6)));
+        is_at(0.25);
         // Fewer, or none.
         drop(meter.stage(2.5));
-        assert!((meter.share() - 0.5).abs() < 1e-9);
+        is_at(0.5);
         meter.forget(5.0);
         assert_eq!(meter.share(), 1.0);
-        assert_eq!(meter.left(Duration::from_secs(2)), Some(Duration::ZERO));
         // Nothing that was estimated wrongly leads out of [0, 1].
         meter.forget(f64::INFINITY);
         meter.expect(f64::NAN);

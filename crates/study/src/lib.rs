@@ -12,7 +12,7 @@ pub mod ellipsoid_cost;
 pub mod ellipsoid_note;
 pub mod engines;
 pub mod merl;
-pub mod planner_seconds;
+pub mod planned;
 pub mod printed_formulas;
 pub mod progress;
 pub mod reference;
@@ -66,11 +66,7 @@ pub const STUDIES: [Study; 18] = [
     study("ellipsoid_note", "the claims of the Ellipsoid note", ellipsoid_note::run),
     study("engines", "errors of the albedos that engines ship [FOLDER]", engines::run),
     study("merl", "makes files in the format of the MERL database [--start] FOLDER", merl::run),
-    study(
-        "planner_seconds",
-        "what bakes take beside their estimates [COUNT]",
-        planner_seconds::run,
-    ),
+    study("planned", "what bakes take next to what is planned [RECIPE ...]", planned::run),
     study(
         "printed_formulas",
         "the printed formulas for masking beside ours",

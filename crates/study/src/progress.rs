@@ -48,7 +48,10 @@ pub fn run(arguments: &[String]) -> Outcome {
         let mut seen = Vec::new();
         while end.recv_timeout(Duration::from_millis(20)) == Err(RecvTimeoutError::Timeout) {
             let now = start.elapsed();
-            seen.extend(meter.left(now).map(|left| (now, meter.share(), left)));
+            let share = meter.share();
+            if share >= 0.01 {
+                seen.push((now, share, now.mul_f64((1.0 - share) / share)));
+            }
         }
         seen
     });

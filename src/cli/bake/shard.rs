@@ -35,7 +35,7 @@ pub(super) fn run(args: &Args, shard: Shard, scene: &Path, folder: &Path) -> Res
     // Said by the first shards, not by each of hundreds.
     let receipts = Receipts::read(folder, scene);
     if !receipts.has(&receipt) {
-        for doubt in receipts.strangers(&receipt) {
+        for doubt in receipts.others(&receipt) {
             warn(format!("{}: {doubt}", folder.display()));
         }
     }

@@ -73,7 +73,7 @@ impl Summary<'_> {
             _ => format!("{} baked, {cached} from the cache", count(baked, "table")),
         };
         let mut text = format!("{what}, in {}", seconds(self.seconds));
-        if baked > 0 && !self.outline.albedos().is_empty() {
+        if baked > 0 && self.outline.has_albedos() {
             let [normals, albedo] = result.seconds.map(seconds);
             text += &format!(" (visible normals {normals}, albedo {albedo})");
         }

@@ -3,23 +3,21 @@
 use serde_json::{Value, json};
 
 use microfacet_baker::distribution::Distribution;
-use microfacet_baker::plan::{Cost, Verdict, entry};
-use microfacet_baker::scene::Ignored;
+use microfacet_baker::plan::{Verdict, entry};
+use microfacet_baker::scene::{Ignored, Material};
+use microfacet_baker::table_spec::TableSpec;
 use microfacet_report::words::verdict::{albedo_reason, reason};
-use microfacet_tables::{Interval, Kind, LobeSpec, MaterialEntry, Reflectance};
+use microfacet_tables::{Axis, Interval, Kind, LobeSpec, MaterialEntry, Reflectance};
 
 use super::Report;
-use super::words::{OWN_TABLES, Offer, Outline};
+use super::words::{OWN_TABLES, Outline, Part, Tables};
 
 impl Outline<'_> {
     /// The verdict on each material of the scene.
     pub(in crate::cli) fn materials(&self) -> Vec<Value> {
         let Self { scene, plan, .. } = self;
         let verdicts = plan.verdicts.iter().zip(&plan.albedo_verdicts);
-        let material = |(material, (verdict, albedo)): (
-            &microfacet_baker::scene::Material,
-            (_, _),
-        )| {
+        let material = |(material, (verdict, albedo)): (&Material, (_, _))| {
             let [short, long] = reason(verdict);
             let other = match *verdict {
                 Verdict::Same { as_material: i, .. } | Verdict::Within { of_material: i, .. } => {
@@ -42,11 +40,6 @@ impl Outline<'_> {
             })
         };
         scene.materials.iter().zip(verdicts).map(material).collect()
-    }
-
-    /// What `--albedo` would add.
-    pub(in crate::cli) fn offered(&self) -> Option<Value> {
-        self.offered.as_ref().map(Offer::json)
     }
 
     /// The materials that no lobe describes.
@@ -81,45 +74,50 @@ fn reflectance(of: &Reflectance) -> Value {
 
 impl Report<'_> {
     pub(super) fn json(&self) -> Value {
-        let Self { outline, .. } = self;
-        let plan = outline.plan;
-        let cost = |cost: &Cost| json!({ "bytes": cost.bytes, "seconds": cost.seconds });
-        let mut costs = self.costs.iter().map(cost);
-        let mut next = || costs.next().unwrap_or_default();
-        let users = &outline.users;
-        let shapes = plan.shapes.iter().zip(&outline.tables).zip(&users.shapes);
-        let shapes: Vec<_> = shapes.map(|((need, specs), names)| {
-            let tables: Vec<_> = specs
-                .iter()
-                .map(|spec| json!({ "name": spec.name, "kind": spec.kind.name(), "shapes": spec.shapes.nodes.len(), "views": spec.views, "numbers": spec.numbers }))
-                .collect();
-            json!({ "gamma": texts(need.gamma()), "s": need.s(), "tables": tables, "cost": next(), "materials": names })
-        }).collect();
-        let distributions: Vec<_> = plan
-            .distributions
-            .iter()
-            .zip(&users.distributions)
-            .map(|(own, names)| {
-                json!({ "distribution": own.label(), "tables": OWN_TABLES, "cost": next(), "materials": names })
-            })
-            .collect();
-        let albedos: Vec<_> = outline.albedos.iter().zip(&users.albedos).map(|(spec, names)| {
-            let tables: Vec<_> = spec.maskings.iter().map(|&masking| spec.name(Kind::Albedo, masking)).collect();
-            let nodes: Vec<_> = spec.axes.iter().map(|axis| json!({ "name": axis.name, "length": axis.len() })).collect();
-            let LobeSpec { distribution, theta, .. } = spec.lobe.map(Distribution::label);
-            json!({
-                "names": tables, "sigma": spec.lobe.sigmas(),
-                "gamma": distribution.is_none().then(|| texts(spec.lobe.gamma)),
-                "distribution": distribution, "theta": theta, "masking": spec.maskings,
-                "reflectance": reflectance(&spec.reflectance), "axes": nodes, "cost": next(), "materials": names,
-            })
-        }).collect();
+        let Self { outline, general, milliseconds } = self;
+        let (mut shapes, mut distributions, mut albedos) = (Vec::new(), Vec::new(), Vec::new());
+        for Part { tables, cost, names } in &outline.parts {
+            match tables {
+                Tables::Shapes(need, specs) => {
+                    let table = |spec: &TableSpec| {
+                        json!({
+                            "name": spec.name, "kind": spec.kind.name(),
+                            "shapes": spec.shapes.nodes.len(), "views": spec.views,
+                            "numbers": spec.numbers,
+                        })
+                    };
+                    let tables: Vec<_> = specs.iter().map(table).collect();
+                    shapes.push(json!({
+                        "gamma": texts(need.gamma()), "s": need.s(), "tables": tables,
+                        "cost": cost, "materials": names,
+                    }));
+                }
+                Tables::Own(own) => distributions.push(json!({
+                    "distribution": own.label(), "tables": OWN_TABLES, "cost": cost,
+                    "materials": names,
+                })),
+                Tables::Albedo(spec) => {
+                    let name = |&masking: &_| spec.name(Kind::Albedo, masking);
+                    let axis = |axis: &Axis| json!({ "name": axis.name, "length": axis.len() });
+                    let LobeSpec { distribution, theta, .. } = spec.lobe.map(Distribution::label);
+                    albedos.push(json!({
+                        "names": spec.maskings.iter().map(name).collect::<Vec<_>>(),
+                        "sigma": spec.lobe.sigmas(),
+                        "gamma": distribution.is_none().then(|| texts(spec.lobe.gamma)),
+                        "distribution": distribution, "theta": theta, "masking": spec.maskings,
+                        "reflectance": reflectance(&spec.reflectance),
+                        "axes": spec.axes.iter().map(axis).collect::<Vec<_>>(),
+                        "cost": cost, "materials": names,
+                    }));
+                }
+            }
+        }
         json!({
             "shapes": shapes, "distributions": distributions, "albedo": albedos,
-            "materials": outline.materials(), "ignored": outline.ignored(), "warnings": outline.scene.warnings,
-            "offered": outline.offered(),
-            "total": cost(&self.total), "general_set": cost(&self.general),
-            "milliseconds": { "reading": self.reading, "planning": self.planning },
+            "materials": outline.materials(), "ignored": outline.ignored(),
+            "warnings": outline.scene.warnings, "offered": outline.offered(),
+            "total": outline.total, "general_set": general,
+            "milliseconds": { "reading": milliseconds[0], "planning": milliseconds[1] },
         })
     }
 }

@@ -9,10 +9,9 @@ mod words;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use microfacet_baker::bake::albedo::AlbedoSpec;
 use microfacet_baker::library::Part;
-use microfacet_baker::plan::{Cost, albedo_costs, bare_cost, cost, distribution_cost};
-use microfacet_baker::table_spec::general_set;
+use microfacet_baker::plan::Cost;
+use microfacet_baker::table_set::costs;
 
 use super::request::Request;
 use super::words::{bytes, compared, count, exact_bytes, seconds, wrapped};
@@ -40,13 +39,9 @@ pub(super) struct Args {
 /// A plan with the figures that are reported on it.
 struct Report<'a> {
     outline: Outline<'a>,
-    /// Cost of each part that is baked.
-    costs: Vec<Cost>,
-    total: Cost,
     general: Cost,
-    /// Milliseconds.
-    reading: f64,
-    planning: f64,
+    /// Of reading and planning.
+    milliseconds: [f64; 2],
 }
 
 pub(super) fn run(args: Args) -> Outcome {
@@ -65,16 +60,16 @@ pub(super) fn run(args: Args) -> Outcome {
         return Ok(Done::Ok);
     };
     let start = Instant::now();
-    let report = Report::new(&args.request, part)?;
-    let milliseconds = |time: Duration| 1e3 * time.as_secs_f64();
-    let (reading, planning) = (milliseconds(reading), milliseconds(planning + start.elapsed()));
-    let report = Report { reading, planning, ..report };
+    let mut report = Report::new(&args.request, part)?;
+    let planning = planning + start.elapsed();
+    report.milliseconds = [reading, planning].map(|time: Duration| 1e3 * time.as_secs_f64());
     if args.json {
         print_json(&report.json())?
     } else {
-        let core_seconds = report.total.seconds * rayon::current_num_threads() as f64;
-        let needs = report.costs.len();
-        print(&(report.text() + &sets::in_shards(&args.scene, &args.request, core_seconds, needs)))?
+        let Outline { parts, total, .. } = &report.outline;
+        let core_seconds = total.seconds * rayon::current_num_threads() as f64;
+        let shards = sets::in_shards(&args.scene, &args.request, core_seconds, parts.len());
+        print(&(report.text() + &shards))?
     }
     warn(library.plans());
     Ok(Done::Ok)
@@ -86,37 +81,16 @@ impl<'a> Report<'a> {
         let Part { scene, plan } = part;
         let (quality, precision) = (request.quality(), request.precision());
         let outline = Outline::new(scene, plan, quality, precision)?;
-        let own = plan.distributions.iter().map(|own| distribution_cost(own, quality, precision));
-        let costs = outline.tables.iter().map(|specs| cost(specs));
-        let costs: Vec<Cost> = costs.chain(own).chain(albedo_costs(&outline.albedos)).collect();
-        let total = costs.iter().copied().chain([bare_cost(&plan.provenance())]).sum();
-        let everything = request.general_plan();
-        let albedos = everything.albedos.iter().map(|_| AlbedoSpec::general(quality, precision));
-        let albedos = albedo_costs(&albedos.collect::<Vec<_>>());
-        let general = [cost(&general_set(quality, precision)), bare_cost(&everything.provenance())]
-            .into_iter()
-            .chain(albedos)
-            .sum();
-        Ok(Self { outline, costs, total, general, reading: 0.0, planning: 0.0 })
+        let general = costs(&request.general_plan(), quality, precision)?.into_iter().sum();
+        Ok(Self { outline, general, milliseconds: [0.0; 2] })
     }
 }
 
 impl Report<'_> {
     fn text(&self) -> String {
-        let Self { outline, costs, total, general, .. } = self;
-        // The albedos come last.
-        let first = costs.len() - outline.albedos.len();
-        let detail = |i: usize| {
-            let open =
-                i.checked_sub(first).is_some_and(|albedo| outline.albedos[albedo].doublings() > 0);
-            let size = if open {
-                format!("about {}", bytes(costs[i].bytes))
-            } else {
-                exact_bytes(costs[i].bytes)
-            };
-            format!(", {size}, about {}", seconds(costs[i].seconds))
-        };
-        let mut text = outline.lines(["bake", "skip"], detail);
+        let Self { outline, general, milliseconds: [reading, planning] } = self;
+        let total = &outline.total;
+        let mut text = outline.lines(["bake", "skip"], |part| part.cost());
 
         let smaller = compared(total.bytes as f64, general.bytes as f64, ["smaller", "larger"]);
         let than_general = |compared: String| {
@@ -138,10 +112,8 @@ impl Report<'_> {
 
         let materials = outline.scene.materials.len() + outline.scene.ignored.len();
         text + &format!(
-            "{}, read in {:.1} ms, planned in {:.1} ms\n",
-            count(materials, "material"),
-            self.reading,
-            self.planning
+            "{}, read in {reading:.1} ms, planned in {planning:.1} ms\n",
+            count(materials, "material")
         )
     }
 }

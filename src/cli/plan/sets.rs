@@ -7,8 +7,8 @@ use rayon::current_num_threads;
 use serde_json::json;
 
 use microfacet_baker::library::Library;
-use microfacet_baker::plan::{Cost, set_cost};
-use microfacet_baker::table_set::{Need, Target};
+use microfacet_baker::plan::Cost;
+use microfacet_baker::table_set::{Need, Target, costs};
 
 use super::{Args, Report, Request};
 use crate::cli::words::{bytes, columns, count, seconds, shell};
@@ -42,7 +42,7 @@ pub(super) fn run(args: &Args, library: &Library, [reading, planning]: [Duration
     let mut total = Cost { bytes: 0, seconds: time };
     let mut materials = 0;
     for (i, part) in library.parts.iter().enumerate() {
-        let cost = set_cost(&part.plan, quality, precision)?;
+        let cost: Cost = costs(&part.plan, quality, precision)?.into_iter().sum();
         total.bytes += cost.bytes;
         materials += part.plan.materials.len();
         rows.push(vec![

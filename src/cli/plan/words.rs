@@ -3,18 +3,19 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use microfacet_baker::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec};
+use microfacet_baker::bake::albedo::{AlbedoLobe, AlbedoSpec};
 use microfacet_baker::distribution::Distribution;
 use microfacet_baker::plan::{
-    AlbedoVerdict, AlbedoWish, Cost, Plan, Verdict, albedo_costs, bare_cost, entry,
+    AlbedoVerdict, AlbedoWish, Cost, Plan, RequiredShapes, Verdict, entry,
 };
 use microfacet_baker::scene::{Ignored, Scene};
+use microfacet_baker::table_set::{BakeError, costs};
 use microfacet_baker::table_spec::{Quality, TableSpec, general_set};
 use microfacet_report::words::material::{material as words_of, reflectance};
 use microfacet_report::words::verdict::{albedo_reason, reason};
 use microfacet_tables::{Interval, Precision};
 use rayon::current_num_threads;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::cli::{escape, words};
 
@@ -42,93 +43,82 @@ fn lobe(lobe: &AlbedoLobe) -> String {
     format!("{}, sigma {sigma}{}", shapes(lobe.gamma), theta.unwrap_or_default())
 }
 
-/// A plan and its scene, with the specifications of all tables.
+/// A plan and its scene, with the specifications and costs of all tables.
 pub(in crate::cli) struct Outline<'a> {
     pub(in crate::cli) scene: &'a Scene,
     pub(super) plan: &'a Plan,
-    /// Tables of each entry of the required shapes.
-    pub(super) tables: Vec<Vec<TableSpec>>,
-    /// Specification of each required albedo.
-    pub(super) albedos: Vec<AlbedoSpec>,
-    /// The albedos that `--albedo` would add.
-    pub(super) offered: Option<Offer>,
-    /// The materials that each of these is for.
-    pub(super) users: Users<'a>,
-}
-
-/// Tables that are not baked unless they are asked for.
-pub(super) struct Offer {
-    pub(super) tables: usize,
-    pub(super) cost: Cost,
-}
-
-impl Offer {
-    /// What the plan offers, if anything.
-    fn of(plan: &Plan, quality: Quality, precision: Precision) -> Option<Self> {
-        // What no table can hold is refused where it is asked for.
-        let specs: Result<Vec<AlbedoSpec>, _> =
-            plan.offered.iter().map(|need| need.spec(quality, precision)).collect();
-        let specs = specs.ok().filter(|specs| !specs.is_empty())?;
-        let tables = specs.iter().map(AlbedoSpec::tables).sum();
-        let mut cost: Cost = albedo_costs(&specs).into_iter().sum();
-        // The set describes albedos once it has any.
-        let with = Plan { albedos: plan.offered.clone(), ..plan.clone() };
-        let described = |plan: &Plan| bare_cost(&plan.provenance()).bytes;
-        cost.bytes += described(&with).saturating_sub(described(plan));
-        Some(Self { tables, cost })
-    }
-
-    pub(super) fn json(&self) -> serde_json::Value {
-        let Self { tables, cost: Cost { bytes, seconds } } = self;
-        json!({ "tables": tables, "cost": { "bytes": bytes, "seconds": seconds } })
-    }
-}
-
-/// Names of the materials that tables are for, in the order of the scene.
-pub(super) struct Users<'a> {
-    /// Of each entry of the required shapes.
-    pub(super) shapes: Vec<Vec<&'a str>>,
-    /// Of each distribution outside the family.
-    pub(super) distributions: Vec<Vec<&'a str>>,
-    /// Of each required albedo.
-    pub(super) albedos: Vec<Vec<&'a str>>,
-}
-
-impl<'a> Users<'a> {
-    fn new(scene: &'a Scene, plan: &Plan) -> Self {
-        let none = |parts: usize| vec![Vec::new(); parts];
-        let mut users = Self {
-            shapes: none(plan.shapes.len()),
-            distributions: none(plan.distributions.len()),
-            albedos: none(plan.albedos.len()),
-        };
-        let verdicts = plan.verdicts.iter().zip(&plan.albedo_verdicts);
-        for (material, (verdict, albedo)) in scene.materials.iter().zip(verdicts) {
-            let name = material.name.as_str();
-            if let Some(need) = verdict.need() {
-                users.shapes[need].push(name);
-            }
-            if *verdict == Verdict::Own {
-                // A scene has a thousand distributions at most.
-                let own = |known: &Distribution| material.lobe.distribution.as_ref() == Some(known);
-                if let Some(i) = plan.distributions.iter().position(own) {
-                    users.distributions[i].push(name);
-                }
-            }
-            if let AlbedoVerdict::Bake(all) = albedo {
-                all.iter().for_each(|&i| users.albedos[i].push(name));
-            }
-        }
-        users
-    }
+    /// The parts that are baked, as in [`costs`].
+    pub(super) parts: Vec<Part<'a>>,
+    /// Of the whole set.
+    pub(super) total: Cost,
+    /// The tables that `--albedo` would add, and their cost.
+    offered: Option<(usize, Cost)>,
 }
 
 /// Tables that are baked together, and the materials that they are for.
-struct Part<'a> {
-    what: String,
-    /// More on what they hold.
-    of: String,
-    names: &'a [&'a str],
+pub(in crate::cli) struct Part<'a> {
+    pub(super) tables: Tables<'a>,
+    pub(super) cost: Cost,
+    pub(super) names: Vec<&'a str>,
+}
+
+/// The tables of a part.
+pub(super) enum Tables<'a> {
+    Shapes(&'a RequiredShapes, Vec<TableSpec>),
+    Own(&'a Distribution),
+    Albedo(AlbedoSpec),
+}
+
+impl Part<'_> {
+    /// Number of tables.
+    fn count(&self) -> usize {
+        match &self.tables {
+            Tables::Shapes(_, specs) => specs.len(),
+            Tables::Own(_) => OWN_TABLES,
+            Tables::Albedo(spec) => spec.tables(),
+        }
+    }
+
+    /// What it is of, and more on what its tables hold.
+    fn what(&self) -> [String; 2] {
+        match &self.tables {
+            Tables::Shapes(need, _) => [shapes(need.gamma()), String::new()],
+            Tables::Own(own) => [escape::line(&own.label()).into(), String::new()],
+            Tables::Albedo(spec) => {
+                let forms: Vec<&str> = spec.maskings.iter().map(|masking| masking.name()).collect();
+                let (lobe, forms) = (lobe(&spec.lobe), forms.join(" and "));
+                let of = format!("{lobe}, {forms} masking, {}: ", reflectance(&spec.reflectance));
+                ["albedo".into(), of]
+            }
+        }
+    }
+
+    /// Bytes and seconds in words; the bytes of what may be refined are not known.
+    pub(super) fn cost(&self) -> String {
+        let Cost { bytes, seconds } = self.cost;
+        let size = match &self.tables {
+            Tables::Albedo(spec) if spec.doublings() > 0 => {
+                format!("about {}", words::bytes(bytes))
+            }
+            _ => words::exact_bytes(bytes),
+        };
+        format!(", {size}, about {}", words::seconds(seconds))
+    }
+}
+
+/// What the albedos that a plan offers would add.
+fn offer(plan: &Plan, quality: Quality, precision: Precision) -> Option<(usize, Cost)> {
+    if plan.offered.is_empty() {
+        return None;
+    }
+    // What no table can hold is refused where it is asked for.
+    let specs = plan.offered.iter().map(|need| need.spec(quality, precision));
+    let tables = specs.map(|spec| spec.map(|spec| spec.tables())).sum::<Result<_, _>>().ok()?;
+    let all = |plan: &Plan| Some(costs(plan, quality, precision).ok()?.into_iter().sum::<Cost>());
+    let (with, without) = (Plan { albedos: plan.offered.clone(), ..plan.clone() }, all(plan)?);
+    let Cost { bytes, seconds } = all(&with)?;
+    let (bytes, seconds) = (bytes - without.bytes, seconds - without.seconds);
+    Some((tables, Cost { bytes, seconds }))
 }
 
 /// Materials for which something is not baked, for the same reason.
@@ -140,24 +130,54 @@ struct Skipped<'a> {
 
 impl<'a> Outline<'a> {
     /// # Errors
-    /// [`AlbedoError`] for an albedo that no table can hold.
+    /// [`BakeError::Albedo`] for an albedo that no table can hold.
     pub(in crate::cli) fn new(
         scene: &'a Scene,
         plan: &'a Plan,
         quality: Quality,
         precision: Precision,
-    ) -> Result<Self, AlbedoError> {
+    ) -> Result<Self, BakeError> {
         let general = general_set(quality, precision);
-        let tables = plan.shapes.iter().map(|need| need.specs(&general)).collect();
-        let albedos = plan.albedos.iter().map(|need| need.spec(quality, precision));
-        let albedos = albedos.collect::<Result<_, _>>()?;
-        let offered = Offer::of(plan, quality, precision);
-        Ok(Self { scene, plan, tables, albedos, offered, users: Users::new(scene, plan) })
+        let costs = costs(plan, quality, precision)?;
+        let shapes = plan.shapes.iter().map(|need| Ok(Tables::Shapes(need, need.specs(&general))));
+        let own = plan.distributions.iter().map(|own| Ok(Tables::Own(own)));
+        let albedos = plan.albedos.iter();
+        let albedos = albedos.map(|need| Ok(Tables::Albedo(need.spec(quality, precision)?)));
+        let part = |(tables, &cost): (Result<_, BakeError>, &Cost)| {
+            Ok(Part { tables: tables?, cost, names: Vec::new() })
+        };
+        let parts = shapes.chain(own).chain(albedos).zip(&costs).map(part);
+        let mut parts = parts.collect::<Result<Vec<Part<'a>>, BakeError>>()?;
+        let first = [plan.shapes.len(), plan.shapes.len() + plan.distributions.len()];
+        let verdicts = plan.verdicts.iter().zip(&plan.albedo_verdicts);
+        for (material, (verdict, albedo)) in scene.materials.iter().zip(verdicts) {
+            let own = |known: &Distribution| material.lobe.distribution.as_ref() == Some(known);
+            let own = match verdict {
+                // A scene has a thousand distributions at most.
+                Verdict::Own => plan.distributions.iter().position(own).map(|i| first[0] + i),
+                _ => None,
+            };
+            let albedos = match albedo {
+                AlbedoVerdict::Bake(all) => &all[..],
+                _ => &[],
+            };
+            let albedos = albedos.iter().map(|i| first[1] + i);
+            for i in verdict.need().into_iter().chain(own).chain(albedos) {
+                parts[i].names.push(&material.name);
+            }
+        }
+        let (total, offered) = (costs.into_iter().sum(), offer(plan, quality, precision));
+        Ok(Self { scene, plan, parts, total, offered })
     }
 
-    /// Specifications of the albedos that are baked.
-    pub(in crate::cli) fn albedos(&self) -> &[AlbedoSpec] {
-        &self.albedos
+    /// What `--albedo` would add.
+    pub(in crate::cli) fn offered(&self) -> Option<Value> {
+        self.offered.map(|(tables, cost)| json!({ "tables": tables, "cost": cost }))
+    }
+
+    /// Whether albedos are baked.
+    pub(in crate::cli) fn has_albedos(&self) -> bool {
+        !self.plan.albedos.is_empty()
     }
 
     /// Whether some material has this verdict.
@@ -168,37 +188,6 @@ impl<'a> Outline<'a> {
     /// Whether rough materials may be missing: something was not read, or is not covered.
     pub(in crate::cli) fn is_doubtful(&self) -> bool {
         self.scene.doubts().next().is_some() || self.plan.not_covered().next().is_some()
-    }
-
-    /// Numbers of tables of all parts that are baked: required shapes, distributions, albedos.
-    fn counts(&self) -> Vec<usize> {
-        let normals = self.tables.iter().map(Vec::len);
-        let own = self.plan.distributions.iter().map(|_| OWN_TABLES);
-        normals.chain(own).chain(self.albedos.iter().map(AlbedoSpec::tables)).collect()
-    }
-
-    /// The same parts, each put into words when it is asked for: there may be very many.
-    fn parts(&self) -> impl Iterator<Item = Part<'_>> {
-        let users = &self.users;
-        let normals = self.plan.shapes.iter().zip(&users.shapes);
-        let normals = normals.map(|(need, names)| Part {
-            what: shapes(need.gamma()),
-            of: String::new(),
-            names,
-        });
-        let own = self.plan.distributions.iter().zip(&users.distributions);
-        let own = own.map(|(own, names)| Part {
-            what: escape::line(&own.label()).into(),
-            of: String::new(),
-            names,
-        });
-        let albedos = self.albedos.iter().zip(&users.albedos).map(|(spec, names)| {
-            let forms: Vec<&str> = spec.maskings.iter().map(|masking| masking.name()).collect();
-            let (lobe, forms) = (lobe(&spec.lobe), forms.join(" and "));
-            let of = format!("{lobe}, {forms} masking, {}: ", reflectance(&spec.reflectance));
-            Part { what: "albedo".into(), of, names }
-        });
-        normals.chain(own).chain(albedos)
     }
 
     /// All that is not baked, and why.
@@ -230,15 +219,15 @@ impl<'a> Outline<'a> {
 
     /// What `--albedo` would add, if it is known and more than is baked.
     fn offer(&self) -> Option<String> {
-        let Offer { tables, cost } = self.offered.as_ref()?;
+        let (tables, Cost { bytes, seconds }) = self.offered?;
         Some(format!(
             "for energy compensation --albedo bakes {}, {} and about {} more; without it only what \
              takes one thread less than {}, and this takes {}",
-            words::count(*tables, "table"),
-            words::bytes(cost.bytes),
-            words::seconds(cost.seconds),
+            words::count(tables, "table"),
+            words::bytes(bytes),
+            words::seconds(seconds),
             words::seconds(AlbedoWish::QUICK),
-            words::seconds(cost.seconds * current_num_threads() as f64)
+            words::seconds(seconds * current_num_threads() as f64)
         ))
     }
 
@@ -247,14 +236,13 @@ impl<'a> Outline<'a> {
     pub(in crate::cli) fn lines(
         &self,
         [baked, skipped]: [&str; 2],
-        detail: impl Fn(usize) -> String,
+        detail: impl Fn(&Part<'_>) -> String,
     ) -> String {
         let verb = baked.len().max(skipped.len());
         let indent = verb + 2 + WHAT + 2;
         let line = |did: &str, what: &str, text: &str| {
             words::wrapped(&format!("{did:verb$}  {what:WHAT$}  "), text, indent)
         };
-        let counts = self.counts();
         let mut text = String::new();
         let materials = &self.scene.materials;
         for material in materials.iter().take(SHOWN) {
@@ -268,18 +256,19 @@ impl<'a> Outline<'a> {
             let more = format!("and {} more", more.len());
             text += &line("has", &more, "--json lists all");
         }
-        for (i, (part, tables)) in self.parts().zip(&counts).take(SHOWN).enumerate() {
-            let tables = format!("{}{}{}", part.of, words::count(*tables, "table"), detail(i));
-            let names = match part.names {
+        for part in self.parts.iter().take(SHOWN) {
+            let [what, of] = part.what();
+            let tables = format!("{of}{}{}", words::count(part.count(), "table"), detail(part));
+            let names = match &part.names[..] {
                 [] => String::new(),
                 names => format!(", for {}", words::list(names.iter().copied())),
             };
-            text += &line(baked, &part.what, &(tables + &names));
+            text += &line(baked, &what, &(tables + &names));
         }
-        if let Some(more @ [_, ..]) = counts.get(SHOWN..) {
-            let tables = more.iter().sum();
-            let tables = format!("{}; --json lists all", words::count(tables, "table"));
-            text += &line(baked, &format!("and {} more", more.len()), &tables);
+        if let Some(more @ [_, ..]) = self.parts.get(SHOWN..) {
+            let tables = words::count(more.iter().map(Part::count).sum(), "table");
+            let what = format!("and {} more", more.len());
+            text += &line(baked, &what, &format!("{tables}; --json lists all"));
         }
         let all = self.skipped();
         for Skipped { what, why, names } in all.iter().take(SHOWN) {

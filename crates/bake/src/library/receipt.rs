@@ -1,20 +1,18 @@
 //! What the shards of a library leave in their cache: which are done, and of what.
 //!
 //! Tables in a cache are never out of date, since their names are made of all that they depend on.
-//! But a shard of another state of the scene, or of another version, is of no use, and whoever
-//! waits for the set wants to hear of it before a week is lost.
+//! But a shard of another state of the scene, or of another version, is of no use: its receipt
+//! tells before the set is assembled.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
 use super::Shard;
-use crate::cache::versions;
+use crate::cache::{sha256, versions, write_in};
 use crate::input::{self, MAX_TEXT};
-use crate::store::{in_folder, make_folder, replace};
 use crate::table_set::Need;
 
 /// The folder of receipts in that of a cache.
@@ -43,9 +41,7 @@ impl Receipt {
             shard: shard.number,
             of: shard.of,
             versions: versions(),
-            needs: hex(Sha256::digest(
-                needs.iter().flat_map(|(id, _)| [id, "\n"]).collect::<String>(),
-            )),
+            needs: sha256(&needs.iter().flat_map(|(id, _)| [id, "\n"]).collect::<String>()),
         }
     }
 
@@ -59,23 +55,13 @@ impl Receipt {
     /// # Errors
     /// Those of the operating system, with the path.
     pub fn leave(&self, cache: &Path) -> io::Result<()> {
-        let at = |path: &Path, why: io::Error| {
-            io::Error::new(why.kind(), format!("{}: {why}", path.display()))
-        };
-        let folder = cache.join(FOLDER);
-        make_folder(&folder).map_err(|why| at(&folder, why))?;
         // Libraries of the same file name, and states of one, may share a cache.
         let Self { scene, shard, of, versions, needs } = self;
-        let library = &hex(Sha256::digest(format!("{scene}\n{versions}\n{needs}")))[..16];
-        let path = folder.join(format!("{library}-{shard}-of-{of}.json"));
-        let json = serde_json::to_string_pretty(self).map_err(io::Error::other)?;
-        let json = json + "\n";
-        in_folder(&folder, || replace(&path, json.as_bytes())).map_err(|why| at(&path, why))
+        let library = &sha256(&format!("{scene}\n{versions}\n{needs}"))[..16];
+        let json = serde_json::to_string_pretty(self).map_err(io::Error::other)? + "\n";
+        let name = format!("{library}-{shard}-of-{of}.json");
+        write_in(&cache.join(FOLDER), &name, json.as_bytes())
     }
-}
-
-fn hex(bytes: impl AsRef<[u8]>) -> String {
-    bytes.as_ref().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// The receipts of a scene that a cache holds.
@@ -125,55 +111,44 @@ impl Receipts {
     /// if all shards of some number are done. `ours` is the receipt of the library as it is now, of
     /// any shard.
     pub fn doubts(&self, ours: &Receipt) -> Vec<String> {
-        let is_same = |receipt: &&Receipt| receipt.is_same(ours);
-        let counts = self.all.iter().filter(is_same).map(|receipt| receipt.of);
-        let done =
-            |of: usize| self.all.iter().filter(is_same).filter(move |receipt| receipt.of == of);
-        // Of the number of shards with the most done.
-        let best = counts.max_by_key(|&of| (done(of).count(), of));
-        if best.is_some_and(|of| done(of).count() == of) {
-            return Vec::new();
+        let mut ended: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
+        for receipt in self.all.iter().filter(|receipt| receipt.is_same(ours)) {
+            ended.entry(receipt.of).or_default().insert(receipt.shard);
         }
         let mut doubts = Vec::new();
-        if let Some(of) = best {
-            let ended: HashSet<usize> = done(of).map(|receipt| receipt.shard).collect();
+        // Of the number of shards with the most done.
+        if let Some((&of, ended)) = ended.iter().max_by_key(|(of, ended)| (ended.len(), **of)) {
             let missing: Vec<usize> = (1..=of).filter(|i| !ended.contains(i)).collect();
-            doubts.push(format!(
-                "{} of {of} shards {} not ended: {}",
-                missing.len(),
-                if missing.len() == 1 { "has" } else { "have" },
-                listed(&missing)
-            ));
+            let have = match missing.len() {
+                0 => return Vec::new(),
+                1 => "has",
+                _ => "have",
+            };
+            let (count, missing) = (missing.len(), listed(&missing));
+            doubts.push(format!("{count} of {of} shards {have} not ended: {missing}"));
         }
-        doubts.extend(self.strangers(ours));
+        doubts.extend(self.others(ours));
         doubts
     }
 
     /// What to say of those that are of another state of the scene, of other options or of another
-    /// version.
-    pub fn strangers(&self, ours: &Receipt) -> Vec<String> {
-        let mut doubts = Vec::new();
-        let (stale, foreign): (Vec<&Receipt>, Vec<&Receipt>) = self
-            .all
-            .iter()
-            .filter(|receipt| !receipt.is_same(ours))
-            .partition(|receipt| receipt.versions == ours.versions);
+    /// version, and of files that are no receipts.
+    pub fn others(&self, ours: &Receipt) -> Vec<String> {
+        let others = self.all.iter().filter(|receipt| !receipt.is_same(ours));
+        let (stale, foreign): (Vec<&Receipt>, Vec<&Receipt>) =
+            others.partition(|receipt| receipt.versions == ours.versions);
         let shards = |receipts: &[&Receipt]| {
-            let names: Vec<String> =
-                receipts.iter().map(|r| format!("{}/{}", r.shard, r.of)).collect();
-            let names = listed(&names);
-            if receipts.len() == 1 {
-                format!("shard {names} is")
-            } else {
-                format!("shards {names} are")
+            let names = receipts.iter().map(|of| format!("{}/{}", of.shard, of.of));
+            let names = listed(&names.collect::<Vec<_>>());
+            match receipts {
+                [_] => format!("shard {names} is"),
+                _ => format!("shards {names} are"),
             }
         };
+        let mut doubts = Vec::new();
         if !stale.is_empty() {
-            doubts.push(format!(
-                "{} of another state of {}, or of other options",
-                shards(&stale),
-                ours.scene
-            ));
+            let (shards, scene) = (shards(&stale), &ours.scene);
+            doubts.push(format!("{shards} of another state of {scene}, or of other options"));
         }
         if let Some(first) = foreign.first() {
             doubts.push(format!(
@@ -183,11 +158,8 @@ impl Receipts {
                 ours.versions
             ));
         }
-        let unread = self
-            .unread
-            .iter()
-            .map(|path| format!("{}: not a receipt of a shard; remove it", path.display()));
-        doubts.extend(unread);
+        let unread = self.unread.iter().map(|path| path.display());
+        doubts.extend(unread.map(|path| format!("{path}: not a receipt of a shard; remove it")));
         doubts
     }
 }

@@ -17,16 +17,22 @@ pub struct Shard {
 }
 
 /// Why a text is not a shard.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NotAShard(String);
-
-impl fmt::Display for NotAShard {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
-    }
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NotAShard {
+    /// It is not two numbers with a slash between them.
+    #[error("\"{0}\" must be I/N, such as 2/16: the second of sixteen shards")]
+    Form(String),
+    /// There are fewer shards than its number.
+    #[error(
+        "\"{0}\" is shard {number} of {of}: I goes from 1 to N, such as {of}/{number}",
+        number = .0.number,
+        of = .0.of
+    )]
+    Beyond(Shard),
+    /// There are no such shards.
+    #[error("\"{0}\": I goes from 1 to N, and N from 1 to {most}", most = Shard::MOST)]
+    Never(String),
 }
-
-impl std::error::Error for NotAShard {}
 
 impl fmt::Display for Shard {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -43,21 +49,11 @@ impl FromStr for Shard {
             (digits(number) && digits(of)).then_some(())?;
             Some((number.parse().ok()?, of.parse().ok()?))
         });
-        let Some((number, of)) = numbers else {
-            return Err(NotAShard(format!(
-                "\"{text}\" must be I/N, such as 2/16: the second of sixteen shards"
-            )));
-        };
-        let shard = Self { number, of };
-        match shard.exists() {
-            true => Ok(shard),
-            false if number > of && (1..=of).contains(&of) => Err(NotAShard(format!(
-                "\"{text}\" is shard {number} of {of}: I goes from 1 to N, such as {of}/{number}"
-            ))),
-            false => Err(NotAShard(format!(
-                "\"{text}\": I goes from 1 to N, and N from 1 to {}",
-                Self::MOST
-            ))),
+        let Some((number, of)) = numbers else { return Err(NotAShard::Form(text.into())) };
+        match (Self { number, of }) {
+            shard if shard.exists() => Ok(shard),
+            shard if number > of && of > 0 => Err(NotAShard::Beyond(shard)),
+            _ => Err(NotAShard::Never(text.into())),
         }
     }
 }

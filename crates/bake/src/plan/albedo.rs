@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use microfacet_sampler::Masking;
 use microfacet_tables::{LobeForm, LobeSpec, Precision, Reflectance, Roughness, SIGMA_MAX};
 
-use super::albedo_work::albedo_seconds;
+use super::cost::AlbedoWork;
 use super::key::{self, Numbers, distinct};
 use super::{NotCovered, Options, is_tabulated, refusal};
 use crate::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec};
@@ -28,7 +28,7 @@ pub enum AlbedoWish {
 }
 
 impl AlbedoWish {
-    /// Seconds of one thread that nobody minds.
+    /// Seconds of one thread up to which albedos need not be asked for.
     pub const QUICK: f64 = 2.0;
 }
 
@@ -183,7 +183,7 @@ fn is_quick(all: &[RequiredAlbedo], quality: Quality) -> bool {
     let mut left = AlbedoWish::QUICK;
     // What no table can hold is refused where it is asked for.
     all.iter().filter_map(|need| need.spec(quality, Precision::F32).ok()).all(|spec| {
-        left -= albedo_seconds(&spec);
+        left -= AlbedoWork::new(&spec).expected(&spec);
         left > 0.0
     })
 }

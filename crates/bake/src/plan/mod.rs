@@ -6,22 +6,14 @@
 //! and are baked for materials that ask for them.
 
 mod albedo;
-mod albedo_work;
 mod cost;
 mod key;
 mod provenance;
 mod required_shapes;
 
-use std::fmt;
-
 pub use albedo::{AlbedoVerdict, AlbedoWish, RequiredAlbedo};
-pub use albedo_work::place_seconds;
-pub(crate) use albedo_work::{AlbedoWork, albedo_seconds};
-pub use cost::{
-    Cost, albedo_cost, albedo_costs, bare_cost, cost, distribution_cost, on_threads, point_seconds,
-    seconds, set_cost,
-};
-pub(crate) use cost::{albedo_headers, distribution_seconds, specs_seconds};
+pub(crate) use cost::{AlbedoWork, Known, bare_bytes, growth, normals_work, radial_work};
+pub use cost::{Cost, on_threads, place_seconds, point_seconds};
 pub use required_shapes::RequiredShapes;
 
 use microfacet_sampler::{Ellipsoid, StudentT};
@@ -299,7 +291,8 @@ pub fn entry(material: &Material) -> MaterialEntry {
 }
 
 /// A material that tables cannot cover.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}{}", self.named(), self.reason())]
 pub enum NotCovered {
     /// γ below [`GAMMA_MIN`].
     Gamma {
@@ -363,15 +356,9 @@ impl NotCovered {
             ),
         }
     }
-}
 
-impl fmt::Display for NotCovered {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(material) = self.material() {
-            write!(f, "material \"{material}\": ")?;
-        }
-        f.write_str(&self.reason())
+    /// The name of the material, before the reason.
+    fn named(&self) -> String {
+        self.material().map_or(String::new(), |material| format!("material \"{material}\": "))
     }
 }
-
-impl std::error::Error for NotCovered {}

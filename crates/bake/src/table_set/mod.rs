@@ -4,14 +4,13 @@
 //! [quality](Target::Quality) each group is baked at it; for the other targets `search` chooses the
 //! levels. A group bakes its tables, certifies them and keeps them in the cache.
 
-mod candidate;
 mod group;
 mod job;
 mod need;
 mod refine;
 mod search;
 
-use std::{fmt, io};
+use std::io;
 
 use microfacet_sampler::{Masking, MaterialError, Tables};
 use microfacet_tables::{LoadError, Precision, Side, Subject, Table};
@@ -19,7 +18,7 @@ use microfacet_tables::{LoadError, Precision, Side, Subject, Table};
 use crate::bake;
 use crate::cache::Cache;
 use crate::memory::{self, TooLarge, Values};
-use crate::plan::Plan;
+use crate::plan::{Cost, Known, Plan, bare_bytes};
 use crate::progress::Meter;
 use crate::table_spec::Quality;
 
@@ -28,6 +27,7 @@ use job::Job;
 use search::Search;
 
 pub use need::{Need, NotANeed};
+pub use search::smallest_bytes;
 
 /// The accuracy or size that the tables are to have.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -98,14 +98,22 @@ pub struct Baked {
 }
 
 /// Why no set could be made.
+#[derive(thiserror::Error)]
 pub enum BakeError {
     /// The tables do not make a set: a fault of the plan.
-    Set(LoadError),
+    #[error(transparent)]
+    Set(#[from] LoadError),
     /// Baking would take too much memory.
-    Memory(TooLarge),
+    #[error(transparent)]
+    Memory(#[from] TooLarge),
     /// [`Target::MaxError`] is not above 0.
+    #[error("an error of {0} cannot be asked for: it must be above 0, such as 1e-4")]
     NoError(f64),
     /// [`Target::MaxError`] is too small for some tables.
+    #[error(
+        "no resolution meets an error of {max_error:e}: {name} reaches {reached:.1e} at best; \
+         allow that much"
+    )]
     OutOfReach {
         /// What was asked for.
         max_error: f64,
@@ -115,13 +123,24 @@ pub enum BakeError {
         reached: f64,
     },
     /// [`Target::MaxBytes`] is too small.
+    #[error(
+        "no set of these materials fits into {max_bytes} bytes: the smallest, of the coarsest \
+         tables, has {}{smallest}",
+        if *planned { "about " } else { "" }
+    )]
     TooSmall {
         /// What was allowed.
         max_bytes: usize,
         /// What the smallest set takes.
         smallest: usize,
+        /// Whether that is planned: nothing was baked.
+        planned: bool,
     },
     /// Choosing the tables would take long, and [`Settings::patient`] is not set.
+    #[error(
+        "choosing these tables would take about {search:.0} s, the bake of default quality about \
+         {default_seconds:.0} s: allow a larger error or fewer bytes, or let it take its time"
+    )]
     TooSlow {
         /// Estimated seconds to choose them.
         search: f64,
@@ -129,22 +148,22 @@ pub enum BakeError {
         default_seconds: f64,
     },
     /// [`Target::MaxBytes`], which all tables of a plan share, where each is to be baked by itself.
+    #[error(
+        "the bytes of a set are divided among all of its tables, which so cannot be baked one by \
+         one: choose a quality or a largest error instead"
+    )]
     Inseparable,
     /// Tables that were to be kept could not be.
+    #[error("finished tables cannot be kept: {0}")]
     NotKept(io::Error),
     /// An albedo that is invalid, or not accurate enough.
-    Albedo(bake::albedo::AlbedoError),
+    #[error(transparent)]
+    Albedo(#[from] bake::albedo::AlbedoError),
 }
 
 impl BakeError {
     fn invalid(why: impl Into<String>) -> Self {
         Self::Set(LoadError::Invalid(why.into()))
-    }
-}
-
-impl From<LoadError> for BakeError {
-    fn from(why: LoadError) -> Self {
-        Self::Set(why)
     }
 }
 
@@ -154,57 +173,20 @@ impl From<MaterialError> for BakeError {
     }
 }
 
-impl From<TooLarge> for BakeError {
-    fn from(why: TooLarge) -> Self {
-        Self::Memory(why)
-    }
-}
-
-impl From<bake::albedo::AlbedoError> for BakeError {
-    fn from(why: bake::albedo::AlbedoError) -> Self {
-        Self::Albedo(why)
-    }
-}
-
-impl fmt::Display for BakeError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Set(why) => why.fmt(f),
-            Self::Memory(why) => why.fmt(f),
-            Self::Albedo(why) => why.fmt(f),
-            Self::NotKept(why) => write!(f, "finished tables cannot be kept: {why}"),
-            Self::Inseparable => f.write_str(
-                "the bytes of a set are divided among all of its tables, which so cannot be baked one by \
-                 one: choose a quality or a largest error instead",
-            ),
-            Self::NoError(max_error) => {
-                write!(
-                    f,
-                    "an error of {max_error} cannot be asked for: it must be above 0, such as 1e-4"
-                )
-            }
-            Self::OutOfReach { max_error, name, reached } => write!(
-                f,
-                "no resolution meets an error of {max_error:e}: {name} reaches {reached:.1e} at best; \
-                 allow that much"
-            ),
-            Self::TooSmall { max_bytes, smallest } => write!(
-                f,
-                "no set of these materials fits into {max_bytes} bytes: the smallest, of the coarsest \
-                 tables, has {smallest}"
-            ),
-            Self::TooSlow { search, default_seconds } => write!(
-                f,
-                "choosing these tables would take about {search:.0} s, the bake of default quality \
-                 about {default_seconds:.0} s: allow a larger error or fewer bytes, or let it take its time"
-            ),
-        }
-    }
-}
-
 microfacet_core::debug_in_words!(BakeError);
 
-impl std::error::Error for BakeError {}
+/// What a set of this quality is expected to cost, by its parts: those of [`Plan::shapes`],
+/// [`Plan::distributions`] and [`Plan::albedos`], and last the description of the set itself.
+///
+/// # Errors
+/// [`BakeError::Albedo`] for an albedo that no table can hold.
+pub fn costs(plan: &Plan, quality: Quality, precision: Precision) -> Result<Vec<Cost>, BakeError> {
+    let mut known = Known::default();
+    let groups = TableGroup::whole(plan)?;
+    let parts = groups.iter().map(|group| group.cost(quality.into(), precision, &mut known));
+    let bare = Cost { bytes: bare_bytes(&plan.provenance()), seconds: 0.0 };
+    parts.chain([Ok(bare)]).collect()
+}
 
 /// Bakes and certifies the tables of a plan, in memory, with the default [`Settings`].
 ///
@@ -251,13 +233,14 @@ pub fn bake_with(plan: &Plan, target: Target, settings: Settings) -> Result<Bake
             }
             in_layouts(tables)
         }
-        // Nothing can meet it, and trying would take minutes.
         Target::MaxError(max_error) if !(max_error > 0.0) => {
             return Err(BakeError::NoError(max_error));
         }
-        Target::MaxError(max_error) => Search::new(plan)?.meeting(max_error, &mut job)?,
+        Target::MaxError(max_error) => {
+            Search::new(TableGroup::apart(plan)?).meeting(max_error, &mut job)?
+        }
         Target::MaxBytes(max_bytes) => {
-            Search::new(plan)?.within(max_bytes, &provenance, &mut job)?
+            Search::new(TableGroup::apart(plan)?).within(max_bytes, &provenance, &mut job)?
         }
     };
     let baked = job.baked_of(&tables);

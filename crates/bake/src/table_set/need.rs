@@ -1,15 +1,12 @@
 //! One thing that a scene needs, by itself: what any process on any machine can bake.
 
-use std::fmt;
-
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
 use microfacet_tables::Precision;
 
-use super::candidate::Candidate;
 use super::group::TableGroup;
 use super::job::Job;
+use super::search::Search;
 use super::{BakeError, Settings, Target};
 use crate::cache::{self, Cache};
 use crate::memory::{self, Values};
@@ -28,16 +25,9 @@ pub struct Need {
 }
 
 /// A text that is not one of [`Need::to_text`], or of another version of this crate.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
 pub struct NotANeed(String);
-
-impl fmt::Display for NotANeed {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for NotANeed {}
 
 /// A need with the versions that its tables depend on.
 #[derive(Serialize, Deserialize)]
@@ -75,17 +65,13 @@ impl Need {
             Target::Quality(quality, precision) => self.group.key(quality.into(), precision),
             _ => format!("{:?} {}", self.target, self.group.key(Level::DEFAULT, Precision::F32)),
         };
-        let digest = Sha256::digest(cache::complete(&key));
-        digest.iter().map(|byte| format!("{byte:02x}")).collect()
+        cache::sha256(&cache::complete(&key))
     }
 
     /// Estimated seconds of one thread, for a largest error those of default quality; the same
     /// number on every machine.
     pub fn seconds(&self) -> f64 {
-        match self.target {
-            Target::Quality(quality, _) => self.group.work(quality.into(), 1),
-            _ => self.group.work(Level::DEFAULT, 1),
-        }
+        self.group.work(self.target.quality().into(), 1)
     }
 
     /// Whether a cache has the finished tables, undamaged; `false` where that takes a search to
@@ -123,9 +109,9 @@ impl Need {
                 self.group.bake(level, &[precision], &mut job)?.concat()
             }
             Target::MaxError(max_error) => {
-                let mut candidate = Candidate::new(self.group.clone());
-                let grade = candidate.meeting(max_error, &mut job)?;
-                candidate.tables(grade).to_vec()
+                // A shard is as patient as it takes.
+                job.patient = true;
+                Search::new(vec![self.group.clone()]).meeting(max_error, &mut job)?
             }
             Target::MaxBytes(_) => return Err(BakeError::Inseparable),
         };

@@ -5,7 +5,7 @@ use microfacet_tables::{Precision, Table};
 use crate::bake;
 use crate::bake::albedo::{AlbedoError, AlbedoSpec};
 use crate::certify::albedo;
-use crate::plan::{AlbedoWork, albedo_seconds};
+use crate::plan::AlbedoWork;
 use crate::progress::Meter;
 
 /// Where only views can be refined, a doubling is kept if its error is at most this share of the
@@ -32,7 +32,7 @@ pub(super) fn albedo_tables(
         precisions.iter().filter_map(of).collect()
     };
     // What was expected holds some doublings.
-    let mut ahead = (albedo_seconds(spec) - work.total()).max(0.0);
+    let mut ahead = work.ahead(spec);
     let mut spec = spec.clone();
     let mut coarser: Option<(f64, Vec<Vec<Table>>)> = None;
     let mut doubling = 0;

@@ -1,36 +1,215 @@
-//! Chooses levels and precisions for a budget of error or of bytes: predicted by a formula, then
-//! measured.
+//! Chooses levels and precisions for a budget of error or of bytes.
 //!
-//! A *grade* is a level and a precision. `Candidate` predicts the error of each grade of a table
-//! group by scaling how the errors of the general set fall with the level. A group is baked at the
-//! coarsest grade that is predicted to meet the budget, and the error in its certificate corrects
-//! the prediction, until the chosen grade has been measured.
+//! A *grade* is a level and a precision. The error of a table group falls with the level about as
+//! that of the general set does, and by how much it is off is measured: between two levels that
+//! were baked, the ratio is interpolated. So each bake narrows the levels down, until the coarsest
+//! that meets the budget has been baked and certified itself.
 
-use microfacet_tables::{Provenance, Table, encode};
+use std::collections::BTreeMap;
 
-use super::candidate::{Candidate, Grade, Pick, SEARCH_OVER_FIRST};
+use microfacet_tables::{Precision, Provenance, Table, encode};
+
 use super::group::TableGroup;
 use super::job::Job;
 use super::{BakeError, PATIENCE, in_layouts};
-use crate::plan::{Plan, bare_cost, on_threads};
+use crate::memory::{self, Values};
+use crate::plan::{Known, Plan, bare_bytes, on_threads};
+use crate::table_spec::Level;
 
+/// 16-bit fixed point is the only small precision to choose from: half precision takes the same
+/// bytes, and its error, 3e-4 to 1e-3 of a value, is that of fixed point at best.
+const PRECISIONS: [Precision; 2] = [Precision::U16, Precision::F32];
+/// Another bake is worth it only if its size is at most this share of the best so far.
+const WORTH: f64 = 0.9;
+/// Limit of a group's measuring time, in bakes of it at default quality or, if longer, in the time
+/// spent so far.
+const ALLOWANCE: f64 = 2.0;
 /// Ratio of two errors that count as different: one per cent.
 const RATIO: f64 = 1.01;
-/// Number of errors that are tried, from [`ANY_ERROR`], more than that of any table, down to less
-/// than single precision resolves.
+/// Number of errors that are tried, from 1, more than that of any table, down to less than single
+/// precision resolves.
 const ERRORS: i32 = 2000;
-const ANY_ERROR: f64 = 1.0;
 /// No further bake is worth it if the error measured is within this factor of the best predicted.
 const CLOSE: f64 = 1.12;
+/// The part of the planned bytes that any set has: the rest are digits of certificates.
+const SURE: f64 = 0.96;
+/// Estimated duration of a whole search, as a multiple of that of its first grades; and the same
+/// for the progress, between a search that ends with its first grade, and a whole one.
+const SEARCH_OVER_FIRST: f64 = 1.7;
+const EXPECTED_OVER_FIRST: f64 = 1.3;
 
-/// The groups of a plan, to be chosen for a budget.
+/// A grade with its error and bytes, predicted or measured.
+#[derive(Clone, Copy)]
+struct Pick {
+    level: Level,
+    /// Index of one of [`PRECISIONS`].
+    precision: usize,
+    /// Bytes of the values before refinement, and the work to bake and certify them once.
+    values: f64,
+    work: f64,
+    error: f64,
+    bytes: f64,
+    measured: bool,
+}
+
+/// Grades to choose from: those measured, those too that may still be measured within the
+/// allowance, or all.
+#[derive(Clone, Copy, PartialEq)]
+enum Among {
+    Measured,
+    Affordable,
+    All,
+}
+
+/// The measurements of a grade.
+struct Measured {
+    tables: Vec<Table>,
+    error: f64,
+    bytes: f64,
+    /// Ratio of the number of values to the estimated one, for an albedo that was refined.
+    growth: f64,
+}
+
+/// A table group with its grades.
+struct Candidate {
+    group: TableGroup,
+    /// Measurements by precision.
+    measured: [BTreeMap<Level, Measured>; 2],
+    /// Estimated bytes of names, axes and certificates.
+    header: f64,
+    /// Estimated work of a bake at default quality, and of what was measured.
+    default_work: f64,
+    spent: f64,
+    /// All grades, the coarsest first.
+    menu: Vec<Pick>,
+}
+
+impl Candidate {
+    fn new(group: TableGroup) -> Self {
+        let at = |level: i32| {
+            let work = group.work(Level(level), 1);
+            [0, 1].map(|precision| Pick {
+                level: Level(level),
+                precision,
+                values: group.bytes(Level(level), PRECISIONS[precision]) as f64,
+                work,
+                error: f64::INFINITY,
+                bytes: f64::INFINITY,
+                measured: false,
+            })
+        };
+        let menu = group.levels().flat_map(at).collect();
+        let header = group.header(Level::DEFAULT, Precision::F32, &mut Known::default()) as f64;
+        let default_work = group.work(Level::DEFAULT, 1);
+        let measured = Default::default();
+        let mut new = Self { group, measured, header, default_work, spent: 0.0, menu };
+        new.predict();
+        new
+    }
+
+    /// Predicts errors and bytes of the menu, from the expected errors and the measured ones.
+    fn predict(&mut self) {
+        let mut menu = std::mem::take(&mut self.menu);
+        for pick in &mut menu {
+            (pick.error, pick.bytes, pick.measured) = self.prediction(pick);
+        }
+        self.menu = menu;
+    }
+
+    fn prediction(&self, &Pick { level, precision, values, .. }: &Pick) -> (f64, f64, bool) {
+        let measured = &self.measured[precision];
+        if let Some(&Measured { error, bytes, .. }) = measured.get(&level) {
+            return (error, bytes, true);
+        }
+        let expected = |level: Level| self.group.expected(level, PRECISIONS[precision]);
+        // Ratio of the measured error and size to those expected.
+        let off =
+            |(at, measured): (&Level, &Measured)| [measured.error / expected(*at), measured.growth];
+        let below = measured.range(..level).next_back();
+        let above = measured.range(level..).next();
+        let [worse, growth] = match (below, above) {
+            (None, None) => [1.0; 2],
+            (Some(one), None) | (None, Some(one)) => off(one),
+            (Some(a), Some(b)) => {
+                let t = f64::from(level.0 - a.0.0) / f64::from(b.0.0 - a.0.0);
+                let ([low, _], [high, growth]) = (off(a), off(b));
+                [low * libm::pow(high / low, t), growth]
+            }
+        };
+        (worse * expected(level), growth * values + self.header, false)
+    }
+
+    /// The smallest grade that errs by no more than `max_error`.
+    fn smallest(&self, max_error: f64, among: Among) -> Option<Pick> {
+        let limit = ALLOWANCE * self.default_work.max(self.spent);
+        let is_affordable = |pick: &Pick| self.spent == 0.0 || self.spent + pick.work <= limit;
+        let is_among = |pick: &Pick| match among {
+            _ if pick.measured => true,
+            Among::Measured => false,
+            Among::Affordable => is_affordable(pick),
+            Among::All => true,
+        };
+        let meets = |pick: &&Pick| pick.error <= max_error && is_among(pick);
+        self.menu.iter().filter(meets).min_by(|a, b| a.bytes.total_cmp(&b.bytes)).copied()
+    }
+
+    /// The grade to take for a largest error, or to measure next: the finest, where none is
+    /// predicted to meet it.
+    fn meeting(&self, max_error: f64) -> Result<Pick, BakeError> {
+        let next = self.smallest(max_error, Among::Affordable);
+        let next = next.or_else(|| self.smallest(max_error, Among::All));
+        match (self.smallest(max_error, Among::Measured), next) {
+            (Some(best), Some(next)) if next.bytes > WORTH * best.bytes => Ok(best),
+            (_, Some(next)) => Ok(next),
+            _ => match self.menu.last() {
+                Some(finest) if !finest.measured => Ok(*finest),
+                _ => {
+                    let measured = self.measured.iter().flat_map(BTreeMap::values);
+                    let reached = measured.map(|it| it.error).fold(f64::INFINITY, f64::min);
+                    Err(BakeError::OutOfReach { max_error, name: self.group.name(), reached })
+                }
+            },
+        }
+    }
+
+    /// The precisions that are measured together: all, where that costs hardly more.
+    fn precisions(&self, asked: usize) -> Vec<usize> {
+        if self.group.shares_measuring() { vec![0, 1] } else { vec![asked] }
+    }
+
+    /// The work to measure a grade.
+    fn work(&self, pick: &Pick) -> f64 {
+        self.group.work(pick.level, self.precisions(pick.precision).len())
+    }
+
+    fn measure(&mut self, pick: &Pick, job: &mut Job) -> Result<(), BakeError> {
+        let level = pick.level;
+        memory::check(Values::at_once([self.group.values(level)]), job.max_memory)?;
+        let all = self.precisions(pick.precision);
+        let precisions: Vec<Precision> = all.iter().map(|&i| PRECISIONS[i]).collect();
+        for (i, tables) in all.into_iter().zip(self.group.bake(level, &precisions, job)?) {
+            let error = tables.iter().map(|table| table.certificate.worst()).fold(0.0, f64::max);
+            let values = tables.iter().map(Table::stored_bytes).sum::<usize>() as f64;
+            let growth = values / self.group.bytes(level, PRECISIONS[i]) as f64;
+            let measured = Measured { tables, error, bytes: values + self.header, growth };
+            self.measured[i].insert(level, measured);
+        }
+        self.spent += pick.work;
+        self.predict();
+        Ok(())
+    }
+}
+
+/// Table groups to be chosen for a budget.
 pub(super) struct Search {
     candidates: Vec<Candidate>,
+    /// Work that was announced and is still to come.
+    ahead: f64,
 }
 
 impl Search {
-    pub(super) fn new(plan: &Plan) -> Result<Self, BakeError> {
-        Ok(Self { candidates: TableGroup::apart(plan)?.into_iter().map(Candidate::new).collect() })
+    pub(super) fn new(groups: Vec<TableGroup>) -> Self {
+        Self { candidates: groups.into_iter().map(Candidate::new).collect(), ahead: 0.0 }
     }
 
     /// The smallest tables whose errors are at most `max_error`.
@@ -39,17 +218,10 @@ impl Search {
         max_error: f64,
         job: &mut Job,
     ) -> Result<Vec<Table>, BakeError> {
-        let first = |candidate: &Candidate| {
-            candidate.smallest(max_error, |_| true).map_or(candidate.finest(), |pick| pick.grade)
-        };
-        self.begin(&self.candidates.iter().map(first).collect::<Vec<_>>(), job)?;
-        let grades = self.candidates.iter_mut().map(|candidate| {
-            let grade = candidate.meeting(max_error, job);
-            candidate.finish(job);
-            grade
-        });
-        let grades = grades.collect::<Result<Vec<Grade>, _>>()?;
-        Ok(self.tables(&grades))
+        let picks = self.measured(job, |candidates| {
+            candidates.iter().map(|candidate| candidate.meeting(max_error)).collect()
+        })?;
+        Ok(self.finish(&picks, job))
     }
 
     /// The tables with the smallest worst error whose file, with its provenance, has at most
@@ -60,108 +232,148 @@ impl Search {
         provenance: &Provenance,
         job: &mut Job,
     ) -> Result<Vec<Table>, BakeError> {
-        let mut room = max_bytes as f64 - bare_cost(provenance).bytes as f64;
-        let worst = |picks: &[Pick]| picks.iter().map(|pick| pick.error).fold(0.0, f64::max);
-        let mut is_first = true;
+        let bare = bare_bytes(provenance) as f64;
+        let least = bare + bytes(&coarsest(&self.candidates, Among::All).unwrap_or_default());
+        if SURE * least > max_bytes as f64 {
+            let (smallest, planned) = (least.ceil() as usize, true);
+            return Err(BakeError::TooSmall { max_bytes, smallest, planned });
+        }
+        let mut room = max_bytes as f64 - bare;
         loop {
-            let known = self.fitting(room, |_, pick| pick.measured);
-            let next = self
-                .fitting(room, |candidate, pick| candidate.is_affordable(pick))
-                .or_else(|| self.fitting(room, |_, _| true));
-            let picks = match (known, next) {
-                (Some(known), Some(next)) if worst(&known) <= CLOSE * worst(&next) => known,
-                (_, Some(next)) => next,
-                _ => self.coarsest(|_, _| true).expect("every group has levels"),
-            };
-            let grades: Vec<Grade> = picks.iter().map(|pick| pick.grade).collect();
-            if std::mem::take(&mut is_first) {
-                self.begin(&grades, job)?;
+            let picks =
+                self.measured(job, |candidates| Ok(fitting_or_coarsest(candidates, room)))?;
+            let size = encode(provenance, &self.tables(&picks))?.len();
+            if size <= max_bytes {
+                return Ok(self.finish(&picks, job));
+            }
+            if fitting(&self.candidates, room, Among::All).is_none() {
+                return Err(BakeError::TooSmall { max_bytes, smallest: size, planned: false });
+            }
+            // The estimate for names and certificates was too small.
+            room = room.min(bytes(&picks)) - (size - max_bytes) as f64;
+        }
+    }
+
+    /// Measures the grades that `choose` picks, one for each group, until it picks measured ones.
+    fn measured(
+        &mut self,
+        job: &mut Job,
+        choose: impl Fn(&[Candidate]) -> Result<Vec<Pick>, BakeError>,
+    ) -> Result<Vec<Pick>, BakeError> {
+        loop {
+            let picks = choose(&self.candidates)?;
+            if self.candidates.iter().flat_map(|it| &it.measured).all(BTreeMap::is_empty) {
+                self.begin(&picks, job)?;
             }
             if picks.iter().all(|pick| pick.measured) {
-                let tables = self.tables(&grades);
-                let bytes = encode(provenance, &tables)?.len();
-                if bytes <= max_bytes {
-                    self.candidates.iter_mut().for_each(|candidate| candidate.finish(job));
-                    return Ok(tables);
-                }
-                if self.fitting(room, |_, _| true).is_none() {
-                    return Err(BakeError::TooSmall { max_bytes, smallest: bytes });
-                }
-                // The estimate for names and certificates was too small.
-                let taken: f64 = picks.iter().map(|pick| pick.bytes).sum();
-                room = room.min(taken) - (bytes - max_bytes) as f64;
-                continue;
+                return Ok(picks);
             }
-            for (candidate, pick) in
-                self.candidates.iter_mut().zip(picks).filter(|(_, pick)| !pick.measured)
-            {
-                candidate.measure(pick.grade, job)?;
+            for (candidate, pick) in self.candidates.iter_mut().zip(&picks) {
+                if !pick.measured {
+                    let work = candidate.work(pick);
+                    let known = self.ahead.min(work);
+                    self.ahead -= known;
+                    job.progress.expect(work - known);
+                    candidate.measure(pick, job)?;
+                }
             }
         }
-    }
-
-    /// The grades with the smallest common error that fit into `room` bytes, among those that
-    /// satisfy a condition. Groups without a better grade leave their bytes to the others.
-    fn fitting(&self, room: f64, of: impl Fn(&Candidate, &Pick) -> bool) -> Option<Vec<Pick>> {
-        let bytes = |picks: &[Pick]| picks.iter().map(|pick| pick.bytes).sum::<f64>();
-        let mut picks = self.coarsest(&of).filter(|picks| bytes(picks) <= room)?;
-        let mut free: Vec<usize> = (0..self.candidates.len()).collect();
-        while !free.is_empty() {
-            let fixed: f64 =
-                (0..picks.len()).filter(|i| !free.contains(i)).map(|i| picks[i].bytes).sum();
-            let fits = |max_error: f64| {
-                let each = free.iter().map(|&i| {
-                    let candidate = &self.candidates[i];
-                    candidate.smallest(max_error, |pick| of(candidate, pick))
-                });
-                each.collect::<Option<Vec<Pick>>>().filter(|picks| fixed + bytes(picks) <= room)
-            };
-            let (mut found, mut low, mut high) = (None, 0, ERRORS);
-            while low < high {
-                let middle = (low + high) / 2;
-                match fits(ANY_ERROR * libm::pow(RATIO, -f64::from(middle))) {
-                    Some(picks) => (found, low) = (Some(picks), middle + 1),
-                    None => high = middle,
-                }
-            }
-            if let Some(found) = found {
-                free.iter().zip(found).for_each(|(&i, pick)| picks[i] = pick);
-            }
-            // The groups with the worst error have no better grade that fits: they keep theirs, and
-            // the error of the others is lowered further.
-            let worst = free.iter().map(|&i| picks[i].error).fold(0.0, f64::max);
-            free.retain(|&i| picks[i].error < worst / RATIO);
-        }
-        Some(picks)
-    }
-
-    /// The smallest grades that satisfy a condition, if each group has one.
-    fn coarsest(&self, of: impl Fn(&Candidate, &Pick) -> bool) -> Option<Vec<Pick>> {
-        let least =
-            |candidate: &Candidate| candidate.smallest(f64::INFINITY, |pick| of(candidate, pick));
-        self.candidates.iter().map(least).collect()
     }
 
     /// Announces a search that begins with these grades, or refuses it if it would take longer than
     /// allowed.
-    fn begin(&mut self, grades: &[Grade], job: &Job) -> Result<(), BakeError> {
-        let seconds = |(candidate, grade): (&Candidate, &Grade)| candidate.group.seconds(grade.0);
-        let search =
-            SEARCH_OVER_FIRST * self.candidates.iter().zip(grades).map(seconds).sum::<f64>();
-        let default_seconds: f64 =
-            self.candidates.iter().map(|candidate| candidate.default_seconds).sum();
-        // A user's patience is by the clock.
-        let [search, default_seconds] = [search, default_seconds].map(on_threads);
+    fn begin(&mut self, picks: &[Pick], job: &Job) -> Result<(), BakeError> {
+        let each = self.candidates.iter().zip(picks);
+        let seconds = picks.iter().map(|pick| pick.work);
+        let default = self.candidates.iter().map(|candidate| candidate.default_work);
+        // By the clock.
+        let search = on_threads(SEARCH_OVER_FIRST * seconds.sum::<f64>());
+        let default_seconds = on_threads(default.sum());
         if !job.patient && search > PATIENCE.max(3.0 * default_seconds) {
             return Err(BakeError::TooSlow { search, default_seconds });
         }
-        let each = self.candidates.iter_mut().zip(grades);
-        each.for_each(|(candidate, grade)| candidate.expect(*grade, job));
+        let work = each.map(|(candidate, pick)| candidate.work(pick)).sum::<f64>();
+        self.ahead = EXPECTED_OVER_FIRST * work;
+        job.progress.expect(self.ahead);
         Ok(())
     }
 
-    fn tables(&self, grades: &[Grade]) -> Vec<Table> {
-        let each = self.candidates.iter().zip(grades);
-        in_layouts(each.flat_map(|(candidate, &grade)| candidate.tables(grade).to_vec()).collect())
+    fn finish(&self, picks: &[Pick], job: &Job) -> Vec<Table> {
+        job.progress.forget(self.ahead);
+        self.tables(picks)
     }
+
+    fn tables(&self, picks: &[Pick]) -> Vec<Table> {
+        let each = self.candidates.iter().zip(picks);
+        let of = |(candidate, pick): (&Candidate, &Pick)| {
+            candidate.measured[pick.precision][&pick.level].tables.clone()
+        };
+        in_layouts(each.flat_map(of).collect())
+    }
+}
+
+/// The least bytes that a set of a plan is expected to have, with its coarsest tables.
+///
+/// # Errors
+/// [`BakeError`] for a plan that is none.
+pub fn smallest_bytes(plan: &Plan) -> Result<usize, BakeError> {
+    let candidates: Vec<Candidate> =
+        TableGroup::apart(plan)?.into_iter().map(Candidate::new).collect();
+    let least = bytes(&coarsest(&candidates, Among::All).unwrap_or_default());
+    Ok(bare_bytes(&plan.provenance()) + least.ceil() as usize)
+}
+
+fn bytes(picks: &[Pick]) -> f64 {
+    picks.iter().map(|pick| pick.bytes).sum()
+}
+
+fn worst(picks: &[Pick]) -> f64 {
+    picks.iter().map(|pick| pick.error).fold(0.0, f64::max)
+}
+
+/// The smallest grades, if each group has one.
+fn coarsest(candidates: &[Candidate], among: Among) -> Option<Vec<Pick>> {
+    candidates.iter().map(|candidate| candidate.smallest(f64::INFINITY, among)).collect()
+}
+
+/// The grades to take for `room` bytes, or to measure next.
+fn fitting_or_coarsest(candidates: &[Candidate], room: f64) -> Vec<Pick> {
+    let next = fitting(candidates, room, Among::Affordable);
+    let next = next.or_else(|| fitting(candidates, room, Among::All));
+    match (fitting(candidates, room, Among::Measured), next) {
+        (Some(known), Some(next)) if worst(&known) <= CLOSE * worst(&next) => known,
+        (_, Some(next)) => next,
+        _ => coarsest(candidates, Among::All).unwrap_or_default(),
+    }
+}
+
+/// The grades with the smallest common error that fit into `room` bytes. Groups without a better
+/// grade leave their bytes to the others.
+fn fitting(candidates: &[Candidate], room: f64, among: Among) -> Option<Vec<Pick>> {
+    let mut picks = coarsest(candidates, among).filter(|picks| bytes(picks) <= room)?;
+    let mut free: Vec<usize> = (0..candidates.len()).collect();
+    while !free.is_empty() {
+        let fixed: f64 =
+            (0..picks.len()).filter(|i| !free.contains(i)).map(|i| picks[i].bytes).sum();
+        let fits = |max_error: f64| {
+            let each = free.iter().map(|&i| candidates[i].smallest(max_error, among));
+            each.collect::<Option<Vec<Pick>>>().filter(|picks| fixed + bytes(picks) <= room)
+        };
+        let (mut found, mut low, mut high) = (None, 0, ERRORS);
+        while low < high {
+            let middle = (low + high) / 2;
+            match fits(libm::pow(RATIO, -f64::from(middle))) {
+                Some(picks) => (found, low) = (Some(picks), middle + 1),
+                None => high = middle,
+            }
+        }
+        if let Some(found) = found {
+            free.iter().zip(found).for_each(|(&i, pick)| picks[i] = pick);
+        }
+        // The groups with the worst error have no better grade that fits: they keep theirs, and the
+        // error of the others is lowered further.
+        let worst = free.iter().map(|&i| picks[i].error).fold(0.0, f64::max);
+        free.retain(|&i| picks[i].error < worst / RATIO);
+    }
+    Some(picks)
 }

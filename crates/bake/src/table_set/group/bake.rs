@@ -15,7 +15,7 @@ use crate::bake;
 use crate::certify::certificate::{POINTS, measure};
 use crate::certify::radial;
 use crate::distribution::Distribution;
-use crate::plan::{RequiredShapes, distribution_seconds, specs_seconds};
+use crate::plan::{RequiredShapes, normals_work, radial_work};
 use crate::progress::Meter;
 use crate::table_spec::{Level, TableSpec};
 
@@ -24,9 +24,8 @@ impl TableGroup {
     pub(in crate::table_set) fn key(&self, level: Level, precision: Precision) -> String {
         match self {
             Self::Normals(need, _) => {
-                let at = |spec: TableSpec| TableSpec { precision, ..spec };
-                let specs: Vec<_> = self.specs(level).into_iter().map(at).collect();
-                format!("{specs:?}, {POINTS} points at s in {:?}", need.certified_s())
+                let (specs, s) = (self.specs(level, precision), need.certified_s());
+                format!("{specs:?}, {POINTS} points at s in {s:?}")
             }
             // Its values are part of the key, since two measured files may have the same name.
             Self::Distribution(distribution, _) => {
@@ -87,42 +86,38 @@ impl TableGroup {
         keys: &[String],
         job: &mut Job,
     ) -> Result<Vec<Vec<Table>>, BakeError> {
-        let mut waiting = Vec::new();
+        let specs = self.specs(level, Precision::F32);
+        let progress = job.progress.clone();
+        let stage = |seconds| progress.stage(seconds);
+        let bake = |spec: &TableSpec| bake::bake(spec, &stage(normals_work(spec)[0]));
         let mut full = Vec::new();
-        for spec in self.specs(level) {
+        for spec in &specs {
             // Kept in full precision: storing does not change the values.
             let key = format!("{spec:?}");
-            let is_it = |tables: &[Table]| tables.len() == 1 && is_of(&tables[0], &spec);
-            let table = job.get(&key, is_it).and_then(|mut tables| tables.pop());
-            let [seconds, _] = specs_seconds(std::slice::from_ref(&spec));
-            if table.is_some() {
-                job.progress.forget(seconds);
-            }
-            let table = table.unwrap_or_else(|| {
-                let table = bake::bake(&spec, &job.progress.stage(seconds));
-                job.made([&table]);
-                // A slice is baked as fast as it is read.
-                if !need.gamma().is_point() {
-                    job.keep(&key, std::slice::from_ref(&table));
+            let is_it = |tables: &[Table]| tables.len() == 1 && is_of(&tables[0], spec);
+            full.push(match job.get(&key, is_it).and_then(|mut tables| tables.pop()) {
+                Some(table) => {
+                    progress.forget(normals_work(spec)[0]);
+                    table
                 }
-                table
+                None => {
+                    let table = bake(spec);
+                    job.made([&table]);
+                    // A slice is baked as fast as it is read.
+                    if !need.gamma().is_point() {
+                        job.keep(&key, std::slice::from_ref(&table));
+                    }
+                    table
+                }
             });
-            waiting.push(key);
-            full.push(table);
         }
-        let beside = self.beside().into_iter().map(|spec| {
-            let [seconds, _] = specs_seconds(std::slice::from_ref(&spec));
-            bake::bake(&spec, &job.progress.stage(seconds))
-        });
-        let beside: Vec<Table> = beside.collect();
-        let specs = self.specs(level);
+        let others: Vec<Table> = self.other_specs().iter().map(bake).collect();
         let certified = |&precision: &Precision| {
             let rounded = full.iter().map(|table| table.clone().rounded(precision));
-            let all = rounded.chain(beside.iter().cloned()).collect();
+            let all = rounded.chain(others.iter().cloned()).collect();
             let set = Tables::from_tables(Provenance::default(), all)?;
             let measured = set.tables()[..full.len()].iter().zip(&specs).map(|(table, spec)| {
-                let [_, seconds] = specs_seconds(std::slice::from_ref(spec));
-                let stage = job.progress.stage(seconds);
+                let stage = stage(normals_work(spec)[1]);
                 let certificate = measure(&set, table, need.certified_s(), &stage)?;
                 Ok(Table { certificate, ..table.clone() })
             });
@@ -133,7 +128,7 @@ impl TableGroup {
         for (key, tables) in keys.iter().zip(&sets) {
             job.keep(key, tables);
         }
-        waiting.iter().for_each(|key| job.forget(key));
+        specs.iter().for_each(|spec| job.forget(&format!("{spec:?}")));
         Ok(sets)
     }
 }
@@ -148,7 +143,7 @@ fn radial_tables(
 ) -> Result<Vec<Vec<Table>>, BakeError> {
     let built = distribution.build().map_err(|why| LoadError::Invalid(why.to_string()))?;
     let marginal = Marginal::new(&*built);
-    let [bake, certify] = distribution_seconds(distribution, level);
+    let [bake, certify] = radial_work(distribution, level);
     let stage = progress.stage(bake);
     let label = distribution.label();
     let full = bake::bake_radial(&marginal, &label, level, Precision::F32, &stage);

@@ -20,11 +20,7 @@ impl TableGroup {
         precision: Precision,
     ) -> bool {
         let asked = match self {
-            Self::Normals(..) => {
-                let at = |spec: TableSpec| TableSpec { precision, ..spec };
-                let specs: Vec<_> = self.specs(level).into_iter().map(at).collect();
-                all(tables, &specs, is_of)
-            }
+            Self::Normals(..) => all(tables, &self.specs(level, precision), is_of),
             Self::Distribution(distribution, _) => {
                 is_radial(tables, &distribution.label(), level, precision)
             }

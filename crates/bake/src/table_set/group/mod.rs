@@ -13,8 +13,8 @@ use crate::bake::radial_bytes;
 use crate::distribution::Distribution;
 use crate::memory::Values;
 use crate::plan::{
-    Plan, RequiredAlbedo, RequiredShapes, albedo_headers, albedo_seconds, cost, distribution_cost,
-    distribution_seconds, specs_seconds,
+    AlbedoWork, Cost, Known, Plan, RequiredAlbedo, RequiredShapes, growth, normals_work,
+    on_threads, radial_work,
 };
 use crate::table_spec::{Level, Quality, TableSpec, general_set};
 
@@ -58,9 +58,9 @@ impl Parts {
         }
     }
 
-    /// The other tables that are required to make a material from these; no more, or the error at
-    /// the seam between two tables would be that of the other one.
-    fn beside(self) -> &'static [usize] {
+    /// The other tables that make a material together with these. The error of slopes is measured
+    /// up to the seam, from their own table alone: so tables beyond it are left out.
+    fn others(self) -> &'static [usize] {
         match self {
             Self::All => &[],
             Self::Shadowing => &[2, 4],
@@ -103,9 +103,8 @@ impl TableGroup {
     pub(super) fn name(&self) -> String {
         match self {
             Self::Normals(..) => {
-                let names: Vec<String> =
-                    self.specs(Level::DEFAULT).into_iter().map(|spec| spec.name).collect();
-                names.join(" with ")
+                let specs = self.specs(Level::DEFAULT, Precision::F32);
+                specs.into_iter().map(|spec| spec.name).collect::<Vec<_>>().join(" with ")
             }
             Self::Distribution(distribution, _) => distribution.label(),
             Self::Albedo(need) => Subject::of(stated(&need.lobe)).name(Kind::Albedo),
@@ -144,76 +143,70 @@ impl TableGroup {
     }
 
     /// Specifications of the tables of visible normals; empty for other groups.
-    fn specs(&self, level: Level) -> Vec<TableSpec> {
+    fn specs(&self, level: Level, precision: Precision) -> Vec<TableSpec> {
         let Self::Normals(need, parts) = self else { return Vec::new() };
-        let general = general_set(level, Precision::F32);
+        let general = general_set(level, precision);
         parts.indices().iter().filter_map(|&i| need.cut(&general[i])).collect()
     }
 
-    /// The estimated bytes of a level in a file, before refinement of an albedo.
-    pub(super) fn file_bytes(&self, level: Level, precision: Precision) -> usize {
-        match self {
-            Self::Normals(..) => {
-                let at = |spec: TableSpec| TableSpec { precision, ..spec };
-                cost(&self.specs(level).into_iter().map(at).collect::<Vec<_>>()).bytes
-            }
-            Self::Distribution(distribution, _) => {
-                distribution_cost(distribution, level, precision).bytes
-            }
-            // An invalid specification costs nothing here; the bake reports what is wrong with it.
-            Self::Albedo(need) => {
-                need.spec(level, precision).map_or(0, |spec| spec.bytes() + albedo_headers(&spec))
-            }
-        }
+    /// Draft tables that make a material together with those of a part of the set.
+    fn other_specs(&self) -> Vec<TableSpec> {
+        let Self::Normals(need, parts) = self else { return Vec::new() };
+        let draft = general_set(Level::DRAFT, Precision::F32);
+        parts.others().iter().filter_map(|&i| need.cut(&draft[i])).collect()
     }
 
-    /// The estimated seconds of one thread to bake a level and to certify it once.
-    pub(super) fn seconds(&self, level: Level) -> f64 {
+    /// The bytes of a level in a file beyond those of the values, for names, axes and certificates.
+    pub(super) fn header(&self, level: Level, precision: Precision, known: &mut Known) -> usize {
         match self {
-            Self::Normals(..) => specs_seconds(&self.specs(level)).iter().sum(),
+            Self::Normals(..) => {
+                self.specs(level, precision).iter().map(|spec| known.normals(spec)).sum()
+            }
             Self::Distribution(distribution, _) => {
-                distribution_seconds(distribution, level).iter().sum()
+                known.radial(&distribution.label(), level, precision)
             }
-            Self::Albedo(need) => {
-                need.spec(level, Precision::F32).map_or(0.0, |spec| albedo_seconds(&spec))
-            }
+            // An invalid specification has none; `cost` and the bake report what is wrong with it.
+            Self::Albedo(need) => need.spec(level, precision).map_or(0, |spec| known.albedo(&spec)),
         }
     }
 
     /// Bytes of the values alone; refinement of an albedo adds to them.
     pub(super) fn bytes(&self, level: Level, precision: Precision) -> usize {
         match self {
-            Self::Normals(..) => {
-                let at = |spec: TableSpec| TableSpec { precision, ..spec }.bytes();
-                self.specs(level).into_iter().map(at).sum()
-            }
+            Self::Normals(..) => self.specs(level, precision).iter().map(TableSpec::bytes).sum(),
             Self::Distribution(..) => radial_bytes(level, precision),
             Self::Albedo(need) => need.spec(level, precision).map_or(0, |spec| spec.bytes()),
         }
     }
 
-    /// Numbers of values held in memory during the bake.
-    pub(super) fn values(&self, level: Level) -> Values {
-        let none = Values::kept(0);
-        match self {
-            Self::Normals(..) => {
-                Values::kept(self.specs(level).iter().map(TableSpec::values).sum())
-            }
-            Self::Distribution(..) => {
-                Values::kept((radial_bytes(level, Precision::F32) / 4) as u128)
-            }
-            Self::Albedo(need) => {
-                let spec = need.spec(level, Precision::F32);
-                spec.map_or(none, |spec| Values::of_albedo(&spec))
-            }
-        }
+    /// What the group is expected to add to a set, whose tables before it are `known`.
+    ///
+    /// # Errors
+    /// [`BakeError::Albedo`] for an albedo that no table can hold.
+    pub(super) fn cost(
+        &self,
+        level: Level,
+        precision: Precision,
+        known: &mut Known,
+    ) -> Result<Cost, BakeError> {
+        let growth = match self {
+            Self::Albedo(need) => growth(&need.spec(level, precision)?),
+            _ => 1.0,
+        };
+        let values = (growth * self.bytes(level, precision) as f64) as usize;
+        let seconds = on_threads(self.work(level, 1));
+        Ok(Cost { bytes: values + self.header(level, precision, known), seconds })
     }
 
-    /// Draft tables that make a material together with those of a part of the set.
-    fn beside(&self) -> Vec<TableSpec> {
-        let Self::Normals(need, parts) = self else { return Vec::new() };
-        let draft = general_set(Level::DRAFT, Precision::F32);
-        parts.beside().iter().filter_map(|&i| need.cut(&draft[i])).collect()
+    /// Numbers of values held in memory during the bake.
+    pub(super) fn values(&self, level: Level) -> Values {
+        match self {
+            Self::Albedo(need) => match need.spec(level, Precision::F32) {
+                Ok(spec) => Values::of_albedo(&spec),
+                Err(_) => Values::kept(0),
+            },
+            _ => Values::kept((self.bytes(level, Precision::F32) / Precision::F32.bytes()) as u128),
+        }
     }
 
     /// The work of [`bake`](Self::bake) in so many precisions, in estimated seconds of one thread.
@@ -221,10 +214,15 @@ impl TableGroup {
         let sum = |[bake, certify]: [f64; 2]| bake + precisions as f64 * certify;
         match self {
             Self::Normals(..) => {
-                sum(specs_seconds(&self.specs(level))) + specs_seconds(&self.beside())[0]
+                let specs = self.specs(level, Precision::F32);
+                let others = self.other_specs();
+                specs.iter().map(|spec| sum(normals_work(spec))).sum::<f64>()
+                    + others.iter().map(|spec| normals_work(spec)[0]).sum::<f64>()
             }
-            Self::Distribution(distribution, _) => sum(distribution_seconds(distribution, level)),
-            Self::Albedo(_) => self.seconds(level),
+            Self::Distribution(distribution, _) => sum(radial_work(distribution, level)),
+            Self::Albedo(need) => need
+                .spec(level, Precision::F32)
+                .map_or(0.0, |spec| AlbedoWork::new(&spec).expected(&spec)),
         }
     }
 }
