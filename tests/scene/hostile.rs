@@ -213,7 +213,9 @@ fn very_many_elements_and_attributes_are_refused() {
         let text = format!("<scene>{many}</scene>");
         assert_soon_refused(&Folder::new(&[("a.xml", text)]), "a.xml", &parts);
     }
-    let text = format!("<scene>\n<a{}/></scene>", many(300_000, |i| format!(" a{i}=''")));
+    let attributes = many(300_000, |i| format!(" a{i}=''"));
+    let spaces = many(100_000, |i| format!(" xmlns:a{i}='b'"));
+    let text = format!("<scene>\n<a{attributes}/><a{spaces}><a/></a></scene>");
     assert_eq!(soon_loaded("a.xml", &text).materials, []);
     // Together, by files that are small enough.
     let whole = format!("<scene>\n{}</scene>", "<include filename='b.xml'/>".repeat(4));
