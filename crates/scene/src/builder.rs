@@ -228,7 +228,7 @@ impl Builder {
         if self.scene.warnings.len() + self.scene.ignored.len() > limits::HINTS {
             return String::new();
         }
-        let candidates: Vec<&str> = candidates.into_iter().take(limits::HINTS).collect();
+        let candidates: Vec<&str> = candidates.into_iter().take(limits::HINT_NAMES).collect();
         did_you_mean(word, &candidates)
     }
 

@@ -35,7 +35,8 @@ pub(crate) const MESSAGE: usize = 1024;
 pub(crate) const WARNINGS: usize = 10_000;
 /// Warnings and materials left out after which no similar names are suggested, and names that are
 /// compared for one suggestion: each takes up to 10 µs.
-pub(crate) const HINTS: usize = 1000;
+pub(crate) const HINTS: usize = 100;
+pub(crate) const HINT_NAMES: usize = 2000;
 /// Bytes of one image file, and of memory for decoding it: a PNG of 8192 x 8192 pixels of 16-bit
 /// RGBA.
 pub(crate) const IMAGE: u64 = 512 << 20;

@@ -138,7 +138,7 @@ impl Reader {
         let mut open: Vec<Element> = Vec::new();
         let mut root = None;
         loop {
-            let place = lines.place(xml.buffer_position() as usize);
+            let start = xml.buffer_position() as usize;
             let event = xml.read_event().map_err(|error| {
                 let why = match error {
                     Error::Syntax(why) => why.to_string(),
@@ -148,11 +148,16 @@ impl Reader {
                 lines.place(xml.error_position() as usize).syntax(why)
             })?;
             match event {
-                Event::Start(_) if open.is_empty() && root.is_some() => {
-                    return Err(place.syntax("a second element follows the root"));
+                Event::Start(tag) => {
+                    let place = lines.place(start);
+                    if open.is_empty() && root.is_some() {
+                        return Err(place.syntax("a second element follows the root"));
+                    }
+                    if open.len() == limits::DEPTH {
+                        return Err(too_deep(&place));
+                    }
+                    open.push(self.element(&tag, place)?);
                 }
-                Event::Start(_) if open.len() == limits::DEPTH => return Err(too_deep(&place)),
-                Event::Start(tag) => open.push(self.element(&tag, place)?),
                 Event::End(_) => {
                     let ended = open.pop();
                     match open.last_mut() {
@@ -164,7 +169,7 @@ impl Reader {
                     if let Some(Element { tag, place, .. }) = open.last() {
                         return Err(place.syntax(format!("<{tag}> has no end")));
                     }
-                    return root.ok_or_else(|| place.syntax("there is no element"));
+                    return root.ok_or_else(|| lines.place(0).syntax("there is no element"));
                 }
                 _ => {}
             }
@@ -207,13 +212,13 @@ fn unescaped(value: &str) -> String {
     let mut parts = value.split('&');
     let mut text = parts.next().unwrap_or_default().to_owned();
     for part in parts {
-        let (name, rest) = part.split_once(';').unwrap_or_default();
-        match unescape(&format!("&{name};")) {
-            Ok(character) => {
-                text += &character;
-                text += rest;
-            }
-            Err(_) => {
+        let reference = part.split_once(';').and_then(|(name, rest)| {
+            let character = unescape(&format!("&{name};")).ok()?.into_owned();
+            Some(character + rest)
+        });
+        match reference {
+            Some(replaced) => text += &replaced,
+            None => {
                 text.push('&');
                 text += part;
             }
