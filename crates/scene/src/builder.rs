@@ -62,6 +62,14 @@ pub(super) fn shortened(text: &str) -> Cow<'_, str> {
     format!("{} ...", &text[..end.unwrap_or(0)]).into()
 }
 
+/// Checks that there may be one more of what there are `count`.
+pub(super) fn check_count(count: usize, what: &str, place: &Place) -> Result<()> {
+    if count < limits::MATERIALS {
+        return Ok(());
+    }
+    Err(place.too_large(format!("the scene has more than {} {what}; split it", limits::MATERIALS)))
+}
+
 /// Collects the materials of a scene of one format.
 pub(super) struct Builder {
     format: Format,
@@ -90,7 +98,7 @@ impl Builder {
 
     /// Adds a lobe of the material `name`.
     pub(super) fn add(&mut self, name: &str, place: &Place, used: bool, lobe: Lobe) -> Result<()> {
-        self.check_count(place)?;
+        check_count(self.count(), "materials", place)?;
         let name = shortened(name);
         for Interval { min, max } in [lobe.roughness.x(), lobe.roughness.y()] {
             if !(min >= 0.0 && max < f64::INFINITY) {
@@ -150,21 +158,15 @@ impl Builder {
         reason: Cow<'static, str>,
         understood: bool,
     ) -> Result<()> {
-        self.check_count(place)?;
+        check_count(self.count(), "materials", place)?;
         let (name, kind) = (shortened(name).into(), shortened(kind).into());
         self.scene.ignored.push(Ignored { name, kind, reason, understood, place: place.clone() });
         Ok(())
     }
 
-    /// Checks that there may be one more material.
-    fn check_count(&self, place: &Place) -> Result<()> {
-        if self.scene.materials.len() + self.scene.ignored.len() < limits::MATERIALS {
-            return Ok(());
-        }
-        Err(place.too_large(format!(
-            "the scene has more than {} materials; split it",
-            limits::MATERIALS
-        )))
+    /// The materials so far, with those that were left out.
+    fn count(&self) -> usize {
+        self.scene.materials.len() + self.scene.ignored.len()
     }
 
     /// Lists a material as not understood if `read` found something impossible in it, so that the

@@ -60,7 +60,7 @@ use self::definition::{Definition, Parameter};
 use self::parameters::{MATERIALS, TEXTURES};
 use self::syntax::{Token, Tokens};
 use crate::Result;
-use crate::builder::{Builder, has_word, shortened};
+use crate::builder::{Builder, check_count, has_word, shortened};
 use crate::include::Includes;
 use crate::limits;
 use crate::references::Memo;
@@ -385,12 +385,4 @@ impl Reader {
         }
         Ok(self.builder.finish(self.includes.found()))
     }
-}
-
-/// Checks that there may be one more of what there are `count`.
-fn check_count(count: usize, what: &str, place: &Place) -> Result<()> {
-    if count < limits::MATERIALS {
-        return Ok(());
-    }
-    Err(place.too_large(format!("the scene has more than {} {what}; split it", limits::MATERIALS)))
 }
