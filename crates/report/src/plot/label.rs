@@ -15,9 +15,11 @@ const ASIDE: [f64; 4] = [0.0, 16.0, 40.0, 80.0];
 /// Half the side of the squares that stand for a line, and how far apart they are.
 const PEN: f64 = 1.5;
 const STRIDE: f64 = 3.0;
-/// The cost, in pixels of distance, of hiding a name or a point, and of hiding a part of a line.
+/// The cost, in pixels of distance, of hiding a name or a point, of hiding a part of a line, and of
+/// leading a part of a line over a name.
 const HIDES: f64 = 4000.0;
 const CROSSES: f64 = 8.0;
+const STRIKES: f64 = 60.0;
 
 /// A rectangle: [left, right], [top, bottom].
 #[derive(Clone, Copy, Debug)]
@@ -61,15 +63,18 @@ pub(super) fn write(
     // What names must not hide, and what they better do not.
     let mut words: Vec<Area> = points.iter().map(|&(at, ..)| Area::about(at, DOT)).collect();
     let segments = curves.iter().flat_map(|curve| curve.windows(2));
-    let mut lines: Vec<Area> = segments.flat_map(|ends| squares(ends[0], ends[1])).collect();
+    let lines: Vec<Area> = segments.flat_map(|ends| squares(ends[0], ends[1])).collect();
+    let mut leads: Vec<Area> = Vec::new();
     for &([x, y], name, color) in points.iter().filter(|(_, name, _)| !name.is_empty()) {
+        let count =
+            |areas: &[Area], at: &Area| areas.iter().filter(|other| other.meets(at)).count();
         let cost = |at: &Candidate| {
-            let hidden = words.iter().filter(|other| other.meets(&at.area)).count();
-            let crossed = lines.iter().filter(|other| other.meets(&at.area)).count();
-            let outside = usize::from(!at.area.is_in(frame));
+            let hidden = count(&words, &at.area) + usize::from(!at.area.is_in(frame));
+            let struck: usize = lead([x, y], at).map(|part| count(&words, &part)).sum();
             (at.start[0] - x).hypot(at.start[1] - y)
-                + HIDES * (hidden + outside) as f64
-                + CROSSES * crossed as f64
+                + HIDES * hidden as f64
+                + CROSSES * count(&lines, &at.area) as f64
+                + STRIKES * (struck + count(&leads, &at.area)) as f64
         };
         let all = candidates([x, y], text::width(name, LETTERS));
         let best = all.min_by(|a, b| cost(a).total_cmp(&cost(b))).expect("some places");
@@ -77,7 +82,7 @@ pub(super) fn write(
         if !best.is_beside {
             let end = [best.start[0] + near, best.start[1]];
             drawing.line(vec![[x, y], end], color, 0.6, Dash::Solid);
-            lines.extend(squares([x, y], end));
+            leads.extend(lead([x, y], &best));
         }
         words.push(best.area);
         let baseline = [best.start[0], best.start[1] + 0.36 * LETTERS];
@@ -96,6 +101,12 @@ fn candidates([x, y]: At, width: f64) -> impl Iterator<Item = Candidate> {
     };
     let sides = move |i| ASIDE.into_iter().flat_map(move |by| [true, false].map(|r| at(i, by, r)));
     (-24..=24).flat_map(sides)
+}
+
+/// The line that leads to a name, but for what lies on its own point; none if it is beside that.
+fn lead(point: At, to: &Candidate) -> impl Iterator<Item = Area> {
+    let parts = (!to.is_beside).then(|| squares(point, to.start).skip(3));
+    parts.into_iter().flatten()
 }
 
 fn squares(from: At, to: At) -> impl Iterator<Item = Area> {
