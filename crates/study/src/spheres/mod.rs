@@ -48,8 +48,8 @@ struct Arguments {
     /// The figure
     #[arg(long, value_enum, default_value = "8")]
     figure: Figure,
-    /// Pixels across the page, or a few less
-    #[arg(long, default_value = "1800", value_parser = clap::value_parser!(u32).range(600..=16384))]
+    /// Pixels across the page, or a few less; below the range its words would overlap
+    #[arg(long, default_value = "1800", value_parser = clap::value_parser!(u32).range(1400..=16384))]
     width: u32,
     #[command(flatten)]
     limit: Limit,
