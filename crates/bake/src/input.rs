@@ -121,7 +121,11 @@ pub(crate) fn name(kind: std::fs::FileType) -> &'static str {
             return "a character device";
         }
     }
-    if kind.is_dir() { "a folder" } else { "no regular file" }
+    match kind {
+        kind if kind.is_dir() => "a folder",
+        kind if kind.is_file() => "a file",
+        _ => "no regular file",
+    }
 }
 
 /// The content of a regular file of at most `limit` bytes, with the errors of [`open`].

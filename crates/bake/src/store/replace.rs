@@ -95,6 +95,10 @@ impl Destination {
     fn of(path: &Path) -> io::Result<Self> {
         let mut old = match fs::metadata(path) {
             Err(why) if why.kind() == ErrorKind::NotFound => None,
+            Err(why) if why.kind() != ErrorKind::PermissionDenied && path.is_symlink() => {
+                let why = "is a link that leads nowhere; name a regular file";
+                return refused(ErrorKind::InvalidInput, why);
+            }
             found => Some(found?),
         };
         if let Some(old) = old.take_if(|old| !old.is_file()) {
