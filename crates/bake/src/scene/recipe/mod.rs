@@ -85,7 +85,7 @@ fn parts(text: &str) -> Vec<Range<usize>> {
 fn read_parts(
     text: &str,
     file: &Path,
-    parts: Vec<Range<usize>>,
+    parts: impl IntoIterator<Item = Range<usize>>,
     most: usize,
 ) -> Result<Scene, SceneError> {
     let invalid = |why: &str| Err(Place::file(file).invalid(why));

@@ -17,7 +17,7 @@ fn the_page_of_recipes_has_every_key() {
 /// What is read, or the message, part by part and at once.
 fn both(text: &str) -> [String; 2] {
     let file = Path::new("r");
-    [read(text, file), read_parts(text, file, vec![0..text.len()], 100)].map(
+    [read(text, file), read_parts(text, file, Some(0..text.len()), 100)].map(
         |outcome| match outcome {
             Ok(scene) => format!("{scene:?}"),
             Err(why) => format!("refused: {why}"),
