@@ -84,8 +84,17 @@ pub struct BoundedView<'a> {
     share: f32,
 }
 
+impl StudentT {
+    /// Prepares the visible normals of every view for reflection.
+    ///
+    /// For γ < 1.8 (in the default set) only the end away from the viewer is restricted.
+    pub fn bounded(self) -> Bounded {
+        Bounded::new(self)
+    }
+}
+
 impl Bounded {
-    pub(super) fn new(lobe: StudentT) -> Self {
+    fn new(lobe: StudentT) -> Self {
         let last = lobe.slices.rows;
         // The exact numbers at all rows and, between the nodes of the limits, some slopes.
         let fine = BETWEEN * CELLS;

@@ -69,7 +69,7 @@ impl ShapeTables {
             masking_cells: slices.shadowing_cells,
             masking: slices.shadowing.clone(),
             lines: slices.lines,
-            numbers: slices.half as usize,
+            numbers: slices.half_cells + 1,
             scales: slices.scales,
             slopes: slices.slope.clone(),
             across: slices.across_cells.clone(),

@@ -81,8 +81,8 @@ pub(crate) struct Slices {
     pub(crate) rows: usize,
     pub(crate) view: HalfTangent,
     pub(crate) lines: Lines,
-    /// Nodes of one half of the u₁ axis.
-    pub(crate) half: u32,
+    /// Cells of one half of the u₁ axis.
+    pub(crate) half_cells: usize,
     /// Whether `slope` is peeled.
     pub(crate) peeled: bool,
     /// Slopes across, the half for u > ½: by node, and by cell.
@@ -104,7 +104,7 @@ impl Slices {
         slices.across = across.nodes;
         spread(&mut slices.across);
         make_monotone(&mut slices.across);
-        slices.scales = [slices.half_cells(), slices.across.len() - 1].map(MirroredRoot::scale);
+        slices.scales = [slices.half_cells, slices.across.len() - 1].map(MirroredRoot::scale);
         slices.across_cells = cubic_cells(&slices.across, 1.0);
         if slices.peeled {
             let moment = f64::from(slices.first_moment());
@@ -141,7 +141,7 @@ impl Slices {
             rows,
             view: coordinate,
             lines: coordinate.lines(rows as f32),
-            half: numbers.nodes.len() as u32,
+            half_cells: numbers.nodes.len() - 1,
             peeled: slope.kind == Kind::VisibleSlopePeeled,
             across: Vec::new(),
             across_cells: Vec::new(),
@@ -150,10 +150,10 @@ impl Slices {
         }
     }
 
-    /// Cells of one half of the u₁ axis.
+    /// Nodes of half a row of `slope`.
     #[inline(always)]
-    pub(crate) fn half_cells(&self) -> usize {
-        self.half as usize - 1
+    pub(crate) fn half(&self) -> u32 {
+        self.half_cells as u32 + 1
     }
 
     /// The coordinate of four views in rows, and 1 − τ. The same bits whatever `HEAVY` is, which

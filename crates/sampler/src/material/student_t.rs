@@ -18,7 +18,6 @@ use microfacet_tables::axis::half_tangent::Slope;
 use microfacet_tables::axis::hermite::{between_rows, hermite, horner, locate, split};
 use wide::f32x4;
 
-use super::bounded::Bounded;
 use super::distribution::{
     Facet, GRAZING, MicrofacetDistribution, SMOOTH, SMOOTH_MASKED, is_hidden, visible_density,
 };
@@ -152,13 +151,6 @@ impl StudentT {
         unit(1.0 - self.slices.heavy.share(at))
     }
 
-    /// Prepares the visible normals of every view for reflection.
-    ///
-    /// For γ < 1.8 (in the default set) only the end away from the viewer is restricted.
-    pub fn bounded(self) -> Bounded {
-        Bounded::new(self)
-    }
-
     /// Whether a lobe of this shape with roughness σ is [smooth](Self::is_effectively_smooth).
     pub(crate) fn is_smooth(&self, sigma: f32) -> bool {
         let rho = sigma * sqrt(1.0 - GRAZING * GRAZING);
@@ -224,10 +216,10 @@ impl StudentT {
         let (row, between) = self.locate_row(view);
         let towards = u > 0.5;
         let t = MirroredRoot::coordinate(u);
-        let (cell, w) = locate(t * slices.half_cells() as f32, slices.half_cells());
+        let (cell, w) = locate(t * slices.half_cells as f32, slices.half_cells);
         // A row holds both halves, cells + 1 nodes each.
-        let stride = 2 * slices.half as usize;
-        let start = row * stride + if towards { slices.half as usize } else { 0 } + cell;
+        let stride = 2 * (slices.half_cells + 1);
+        let start = row * stride + if towards { slices.half_cells + 1 } else { 0 } + cell;
         let nodes = &slices.slope[..];
         let (a, b) = between_rows(
             &nodes[start..start + 2],

@@ -172,7 +172,7 @@ impl StudentT {
     pub fn table_joints(&self, v: Vec3) -> [Vec<f64>; 2] {
         let view = self.stretch(v);
         let Some(rows) = self.rows_at(self.coordinate(&view)) else { return Default::default() };
-        let half = self.slices.half as usize;
+        let half = self.slices.half_cells + 1;
         let slope = |g: f64, sign: f64| {
             let [x, z] = slope_at(g);
             sign * x / z
@@ -215,7 +215,7 @@ impl StudentT {
         let slices = &self.slices;
         let (row, between) = split(f32x4::splat(coordinate));
         let (row, between) = (row.to_array()[0] as u32 as usize, between.to_array()[0]);
-        let stride = 2 * slices.half as usize;
+        let stride = 2 * (slices.half_cells + 1);
         let (low, high) = slices.slope.get(row * stride..)?.get(..2 * stride)?.split_at(stride);
         Some(Rows { low, high, between })
     }
@@ -223,7 +223,7 @@ impl StudentT {
     /// The half of the row that holds the in-plane slope of ends 1 ± h, and the cell in it.
     #[inline(always)]
     fn cell_along(&self, rows: &Rows<'_>, ends: [f64; 2]) -> (usize, Cell) {
-        let cells = self.slices.half_cells();
+        let cells = self.slices.half_cells;
         let low = ends[0];
         // The half for u ≤ ½ ends where 1 + h reaches its last node; larger slopes are looked up by
         // 1 − h in the other half.
@@ -250,7 +250,7 @@ impl StudentT {
 
     /// A row of the table.
     pub(super) fn row(&self, row: usize) -> Rows<'_> {
-        let stride = 2 * self.slices.half as usize;
+        let stride = 2 * (self.slices.half_cells + 1);
         Rows::one(&self.slices.slope[row * stride..(row + 1) * stride])
     }
 }

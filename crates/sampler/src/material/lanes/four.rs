@@ -111,9 +111,9 @@ impl StudentT {
     #[inline(always)]
     fn look_up<const HEAVY: bool>(&self, at: &Located) -> Slopes {
         let slices = &self.slices;
-        let stride = 2 * slices.half;
+        let stride = 2 * slices.half();
         let half: i32x4 = bytemuck::cast(at.along.towards);
-        let cell = at.along.cell + (half & i32x4::splat(slices.half as i32));
+        let cell = at.along.cell + (half & i32x4::splat(slices.half() as i32));
         let (row, cell, between) = (at.row.to_array(), cell.to_array(), at.between.to_array());
         let nodes = &slices.slope[..];
         let node = |i: usize| {

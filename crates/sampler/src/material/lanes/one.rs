@@ -114,11 +114,11 @@ impl StudentT {
         let towards = u.simd_gt(0.5);
         let sign = towards & f32x4::splat(-0.0);
         let half: i32x4 = bytemuck::cast(towards);
-        let cell = (cell + (half & i32x4::new([slices.half as i32, 0, 0, 0]))).to_array();
+        let cell = (cell + (half & i32x4::new([slices.half() as i32, 0, 0, 0]))).to_array();
 
         // The guard cell makes every random number's cell valid, and the guard row every view's.
         // NaN fails here or, where it converts to 0, in the test of g.
-        let stride = 2 * slices.half;
+        let stride = 2 * slices.half();
         let low = start(row, stride, cell[0]);
         let (high, across) = (low + stride as usize, cell[1] as u32 as usize);
         let nodes = &slices.slope[..];
