@@ -36,7 +36,7 @@ fn prepare() {
         Some(left) => left(),
         None => "nothing was written".into(),
     };
-    // Not around the bar: whoever prints may be waiting for a reader that has stopped.
+    // Not around the bar: a print under way may be waiting for a reader that has stopped.
     let _ = writeln!(io::stderr(), "{}", styled("interrupted", &message));
 }
 

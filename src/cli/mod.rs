@@ -217,7 +217,7 @@ fn say(kind: &str, text: &str) {
     });
 }
 
-/// A message for standard error, its kind in colour on a terminal that wants it (`NO_COLOR`).
+/// A message for standard error, its kind in colour.
 fn styled(kind: &str, text: &str) -> String {
     let colour = match kind {
         "note" => AnsiColor::Cyan,
@@ -227,7 +227,7 @@ fn styled(kind: &str, text: &str) -> String {
     format!("{}: {text}", coloured(kind, colour, &io::stderr()))
 }
 
-/// A word in colour, where a stream is a terminal that wants it.
+/// A word in colour, where a stream is a terminal and `NO_COLOR` is not set.
 fn coloured(word: &str, colour: AnsiColor, stream: &impl anstream::stream::RawStream) -> String {
     let style = Style::new().bold().fg_color(Some(colour.into()));
     match anstream::AutoStream::choice(stream) {
@@ -249,8 +249,7 @@ fn summarize(text: &str) -> Result<()> {
     if is_quiet() { Ok(()) } else { print(text) }
 }
 
-/// Writes the verdict of a validation, in colour on a terminal that wants it, and returns the
-/// outcome.
+/// Writes the verdict of a validation, and returns the outcome.
 fn verdict(passed: bool) -> Outcome {
     let (word, colour) =
         if passed { ("PASSED", AnsiColor::Green) } else { ("REJECTED", AnsiColor::Red) };

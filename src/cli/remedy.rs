@@ -1,5 +1,5 @@
-//! What helps against an error of a library, in the words of the command. The libraries say what is
-//! wrong, with numbers and what is allowed; only the command knows its options and its recipes.
+//! What helps against an error of a library: options and recipes, which are the command's. The
+//! libraries say what is wrong, with numbers and what is allowed.
 
 use anyhow::Error;
 

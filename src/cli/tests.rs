@@ -1,4 +1,4 @@
-//! What holds for every subcommand and option, found through what clap knows of them.
+//! What holds for every subcommand and option, read from their declarations.
 
 use std::any::TypeId;
 use std::collections::BTreeMap;

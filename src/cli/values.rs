@@ -66,7 +66,7 @@ pub(super) fn number(
     }
 }
 
-/// Parses a number of any size; what uses it knows its range.
+/// Parses a number of any size; its range is checked where it is used.
 pub(super) fn finite(text: &str) -> Result<f64, String> {
     number(|x| x.is_finite(), "a finite number")(text)
 }

@@ -7,41 +7,23 @@ use microfacet_report::plot::FIGURES;
 use microfacet_study::STUDIES;
 use microfacet_tables::{Kind, Mapping};
 
-/// `text` with every run of white space as one space, so that a page may break its lines anywhere.
-fn flat(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
-}
+use crate::common::{flat, has};
 
 #[test]
 fn the_page_of_the_format_has_every_mapping_and_its_formula() {
     let page = flat(include_str!("../../docs/format.md"));
     for mapping in Mapping::EVERY {
-        assert!(
-            page.contains(&format!("`{}`", mapping.name())),
-            "docs/format.md: no `{}`",
-            mapping.name()
-        );
-        assert!(
-            page.contains(&flat(mapping.formula())),
-            "docs/format.md: the formula of `{}` is {}",
-            mapping.name(),
-            mapping.formula()
-        );
+        has(&page, &[&format!("`{}`", mapping.name()), &flat(mapping.formula())]);
     }
 }
 
 #[test]
 fn the_page_of_the_format_is_of_this_version() {
     let page = include_str!("../../docs/format.md");
-    assert!(
-        page.starts_with(&format!("# The table format, version {}\n", microfacet_tables::VERSION))
-    );
+    let title = format!("# The table format, version {}\n", microfacet_tables::VERSION);
+    assert!(page.starts_with(&title));
     for kind in Kind::ALL {
-        assert!(
-            page.contains(&format!("`{}`", kind.name())),
-            "docs/format.md: no `{}`",
-            kind.name()
-        );
+        has(page, &[&format!("`{}`", kind.name())]);
     }
 }
 
@@ -72,10 +54,9 @@ fn no_example_asks_for_a_crate_of_vectors() {
     for path in all {
         let is_page = path.extension().is_some_and(|end| end == "md");
         for line in fs::read_to_string(&path).unwrap().lines() {
-            let said =
-                line.trim_start().strip_prefix("//").map(|doc| doc.trim_start_matches(['/', '!']));
-            let said = if is_page { Some(line) } else { said };
-            let code = said.unwrap_or("").trim_start_matches(['#', ' ']);
+            let comment = line.trim_start().strip_prefix("//").unwrap_or("");
+            let shown = if is_page { line } else { comment.trim_start_matches(['/', '!']) };
+            let code = shown.trim_start_matches(['#', ' ']);
             assert!(!code.starts_with("use glam::"), "{}: {line}", path.display());
         }
     }

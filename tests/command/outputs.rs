@@ -5,7 +5,7 @@ use std::fs;
 use microfacet_baker::store;
 use microfacet_tables::{Errors, Quantity};
 
-use crate::common::{Desk, PROGRAM, has, lacks, material, names, ok};
+use crate::common::{Desk, PROGRAM, flat, has, lacks, material, names, ok};
 
 const GLASS: &str = include_str!("../../tables/recipes/frosted-glass.toml");
 
@@ -44,11 +44,6 @@ fn fits(text: &str) {
     for line in text.lines() {
         assert!(line.chars().count() <= 100, "{} columns: {line}", line.chars().count());
     }
-}
-
-/// The text with every run of white space as one space: lines may break anywhere.
-fn flat(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// The lines after `next:`, which are the last.

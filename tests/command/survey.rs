@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::common::{Desk, has, lacks, material, ok};
+use crate::common::{Desk, flat, has, lacks, material, ok};
 
 use microfacet_baker::scene::{Scene, recipe_of};
 use microfacet_baker::store;
@@ -63,7 +63,6 @@ fn every_material_is_described() {
     assert_eq!(baked["materials"], plan["materials"]);
     for line in ["plan s.pbrt", "bake s.pbrt --quality draft --out out"] {
         let text = desk.ok(line);
-        let flat = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
         let lines: Vec<String> = text.lines().map(flat).collect();
         for has in [
             "has steel sigma 0.2 and 0.3, gamma 2, height-correlated masking, no Fresnel term",
@@ -222,7 +221,7 @@ fn a_folder_is_summed_up() {
         "distinct needs of all:",
         "warnings: ./a/far.pbrt:2:51: the roughness of",
     ];
-    has(&text.split_whitespace().collect::<Vec<_>>().join(" "), &parts);
+    has(&flat(&text), &parts);
     has(warnings.last().unwrap(), &["4 materials were not understood, in 2 scenes"]);
     assert!(warnings.iter().any(|it| it.contains("2 scenes were refused")), "{warnings:?}");
 

@@ -41,7 +41,7 @@ pub(crate) fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Words of a command line without quotes.
+/// Words between white space, as of a command line without quotes.
 pub(crate) fn words(line: &str) -> Vec<&str> {
     line.split_whitespace().collect()
 }
@@ -60,6 +60,11 @@ pub(crate) fn lacks(text: &str, parts: &[&str]) {
     for part in parts {
         assert!(!text.contains(part), "{part:?} in:\n{text}");
     }
+}
+
+/// A text with every run of white space as one space: lines may break anywhere.
+pub(crate) fn flat(text: &str) -> String {
+    words(text).join(" ")
 }
 
 /// A material of a recipe, with lines after its name.
