@@ -11,8 +11,8 @@
 //! | [`LobeSpec`] | a lobe, as recipes, plans and files state it |
 //! | [`Index`] | which of the numbered sets of a library holds a material |
 //!
-//! `microfacet-baker`, which bakes sets, and `microfacet-sampler`, which looks them up, share it, so
-//! that a coordinate is one formula for both. A renderer needs this crate only to write sets, or to
+//! `microfacet-baker`, which bakes sets, and `microfacet-sampler`, which looks them up, share it: a
+//! coordinate is one formula for both. A renderer needs this crate only to write sets, or to
 //! read one table by itself:
 //!
 //! ```

@@ -1,7 +1,7 @@
 //! Directional albedos of skewed lobes against untilted ones, brute force, sampling and identities.
 //!
-//! `cargo test --release -p microfacet-model --test values skewed:: -- --ignored --nocapture` prints
-//! the documented accuracy.
+//! `cargo test --release -p microfacet-model --test values skewed:: -- --ignored --nocapture`
+//! prints the documented accuracy.
 
 use core::f64::consts::PI;
 
