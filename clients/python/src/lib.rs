@@ -2,8 +2,9 @@
 //!
 //! [`arrays`] broadcasts arguments and runs functions of them on all cores; [`words`] turns words
 //! and errors into those of Python. [`tables`] loads and bakes sets, [`lobe`] and [`bsdf`] are the
-//! run-time crate, [`exact`] the model, [`distribution`] what lobes of both have in common,
-//! [`shape`] the tables of a shape for lookups elsewhere, and [`farm`] what processes bake together.
+//! run-time crate, [`exact`] the model, [`distribution`] what lobes of both have in common.
+//! [`shape`] has the tables of a shape for lookups elsewhere, and [`farm`] what processes bake
+//! together.
 
 use pyo3::prelude::*;
 
