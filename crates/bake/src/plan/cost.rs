@@ -206,7 +206,7 @@ fn of_albedos(spec: &AlbedoSpec) -> [f64; 2] {
         LobeForm::StudentT => {
             // Each factor of 3.3 takes another doubling of the azimuths.
             let doublings = libm::log(elongation()) / 1.2 - 0.75;
-            [250.0 * tails * elongation().sqrt(), doublings.clamp(0.0, 2.0)]
+            [230.0 * tails * elongation().sqrt(), doublings.clamp(0.0, 2.0)]
         }
         LobeForm::Ellipsoid => [2000.0 * tails * elongation().sqrt(), 1.5],
         LobeForm::Distribution => {
