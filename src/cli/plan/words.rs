@@ -66,7 +66,7 @@ pub(in crate::cli) struct Part<'a> {
 pub(super) enum Tables<'a> {
     Shapes(&'a RequiredShapes, Vec<TableSpec>),
     Own(&'a Distribution),
-    Albedo(AlbedoSpec),
+    Albedo(Box<AlbedoSpec>),
 }
 
 impl Part<'_> {
@@ -142,7 +142,8 @@ impl<'a> Outline<'a> {
         let shapes = plan.shapes.iter().map(|need| Ok(Tables::Shapes(need, need.specs(&general))));
         let own = plan.distributions.iter().map(|own| Ok(Tables::Own(own)));
         let albedos = plan.albedos.iter();
-        let albedos = albedos.map(|need| Ok(Tables::Albedo(need.spec(quality, precision)?)));
+        let albedos =
+            albedos.map(|need| Ok(Tables::Albedo(Box::new(need.spec(quality, precision)?))));
         let part = |(tables, &cost): (Result<_, BakeError>, &Cost)| {
             Ok(Part { tables: tables?, cost, names: Vec::new() })
         };
