@@ -246,7 +246,7 @@ mod tests {
             // A formula beyond its fit says so.
             (
                 "beckmann:0.6 --to gauss --by formula",
-                ["eq. 13", "(fitted to m = 0.004473 to 0.4473)"],
+                ["gauss:", "eq. 13 (fitted to m = 0.004473 to 0.4473)"],
             ),
         ] {
             let text = run(&format!("--from {line}")).unwrap();
