@@ -29,7 +29,7 @@ pub(crate) const MATERIALS: usize = 100_000;
 /// Nodes that are followed for all materials of a MaterialX document together: materials may share
 /// them, and definitions use each other.
 pub(crate) const NODES: u64 = 1 << 20;
-/// Bytes of a name, a warning, or a reason why a material was left out: each material may repeat it.
+/// Bytes of a name, a warning, or a reason to leave a material out: each material may repeat it.
 pub(crate) const MESSAGE: usize = 1024;
 /// Warnings of a scene; one more says that there are further ones.
 pub(crate) const WARNINGS: usize = 10_000;

@@ -29,7 +29,7 @@ pub fn run(arguments: &[String]) -> Outcome {
 
 /// Columns of a row's inputs.
 const INPUTS: &str = "case,sigma_x,sigma_y,gamma,masking,vx,vy,vz,u1,u2,mx,my,mz,lx,ly,lz";
-/// Columns of what follows from them, each first as `…_exact`, then as `…_table`: of directions, and
+/// Columns of what follows from them, each first as `…_exact`, then as `…_table`: of directions and
 /// of albedos.
 const RESULTS: [&str; 14] = [
     "g1", "g2", "d", "nx", "ny", "nz", "density", "e", "scale", "bias", "f82", "e_avg", "bias_avg",

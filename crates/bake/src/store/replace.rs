@@ -28,7 +28,7 @@ const TIMES: usize = 100;
 /// there: into a temporary file in the same folder, synchronised to disk, then renamed over it.
 ///
 /// Symbolic links are followed, dangling ones too, and the file they name is replaced. An existing
-/// file keeps its mode and, where the system allows it, its owner; its other hard links keep the old
+/// file keeps its mode and, where the system allows it, its owner; other hard links keep the old
 /// content. Character devices are written through.
 ///
 /// # Errors

@@ -15,6 +15,7 @@ use super::interface::{Interface, checked};
 use super::mixture::{Mixture, Part, are_finite, choice, chosen};
 use super::reflectance::reflectances;
 use super::{Bsdf, BsdfSample, Transport};
+use crate::albedo::DielectricAlbedo;
 use crate::material::MicrofacetDistribution;
 use crate::tables::Tables;
 
@@ -105,14 +106,42 @@ impl<L: MicrofacetDistribution, const N: usize> Plastic<L, N> {
         compensation: Compensation,
         stand_in: StandIn,
     ) -> Result<Self, BindError> {
+        Self::made(lobe, eta, base, masking, compensation, |lobe| {
+            tables.dielectric_albedo_of(lobe, eta, masking, stand_in)
+        })
+    }
+
+    /// The same by albedos that are at hand, which must be of the same lobe and index; their form
+    /// of masking becomes that of the plastic.
+    ///
+    /// # Errors
+    /// [`BindError`] for an η outside [1e-3, 1e3] or a ρ outside [0, 1].
+    pub fn with_albedo(
+        lobe: L,
+        eta: f64,
+        base: [f32; N],
+        albedo: DielectricAlbedo,
+        compensation: Compensation,
+    ) -> Result<Self, BindError> {
+        let masking = albedo.masking;
+        Self::made(lobe, eta, base, masking, compensation, |_| Ok(albedo))
+    }
+
+    fn made(
+        lobe: L,
+        eta: f64,
+        base: [f32; N],
+        masking: Masking,
+        compensation: Compensation,
+        albedo: impl FnOnce(&L) -> Result<DielectricAlbedo, BindError>,
+    ) -> Result<Self, BindError> {
         let (index, eta) = (eta, checked(eta)?);
         reflectances("base", &base)?;
         let smooth = lobe.is_effectively_smooth() || eta == 1.0;
         let energy = Box::new(if smooth {
             Energy::smooth(eta)
         } else {
-            let albedo = tables.dielectric_albedo_of(&lobe, index, masking, stand_in)?;
-            Energy::rough(albedo, compensation, eta)
+            Energy::rough(albedo(&lobe)?, compensation, eta)
         });
         let diffuse = base.map(|base| {
             let left = energy.left(base);
