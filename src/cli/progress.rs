@@ -20,8 +20,6 @@ const TICK: Duration = Duration::from_millis(100);
 const DELAY: Duration = Duration::from_millis(300);
 /// Steps of the bar.
 const LENGTH: u64 = 1000;
-/// Steps after which the rest is estimated: the first parts of a stage may be unlike the others.
-const FIRST: u64 = LENGTH / 100;
 
 /// A bar that follows a meter until it is dropped.
 pub(super) struct Bar(Option<(Sender<()>, JoinHandle<()>)>);
@@ -35,10 +33,12 @@ pub(super) fn show(meter: &Meter, what: &'static str) -> Bar {
     let waits = move |time| ended.recv_timeout(time) == Err(RecvTimeoutError::Timeout);
     let meter = meter.clone();
     let draw = move || {
+        let start = Instant::now();
         if !waits(DELAY) {
             return;
         }
-        let bar = ProgressBar::new(LENGTH).with_style(style(meter.is_known())).with_message(what);
+        let style = style(meter.clone(), start);
+        let bar = ProgressBar::new(LENGTH).with_style(style).with_message(what);
         if let Ok(mut shown) = SHOWN.lock() {
             *shown = Some(bar.clone());
         }
@@ -54,13 +54,15 @@ pub(super) fn show(meter: &Meter, what: &'static str) -> Bar {
     Bar(std::thread::Builder::new().spawn(draw).ok().map(|thread| (end, thread)))
 }
 
-/// The style of a bar; the length of a stream is not known.
-fn style(is_known: bool) -> ProgressStyle {
-    let left = |state: &ProgressState, out: &mut dyn Write| {
+/// The style of a bar; the length of a stream is not known. The time left is the meter's: that of
+/// the bar is by the steps of the last seconds, and stages differ.
+fn style(meter: Meter, start: Instant) -> ProgressStyle {
+    let is_known = meter.is_known();
+    let left = move |_: &ProgressState, out: &mut dyn Write| {
         // Writing to a terminal's line cannot usefully fail.
-        let _ = match state.pos() {
-            FIRST.. => write!(out, "{} left", HumanDuration(state.eta())),
-            _ => Ok(()),
+        let _ = match meter.left(start.elapsed()) {
+            Some(left) => write!(out, "{} left", HumanDuration(left)),
+            None => Ok(()),
         };
     };
     let template = match is_known {

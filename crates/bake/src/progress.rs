@@ -8,6 +8,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::time::Duration;
 
 /// Work ahead and work done; clones count the same work.
 #[derive(Clone, Debug, Default)]
@@ -19,6 +20,9 @@ struct Counts {
     known: AtomicU64,
     done: AtomicU64,
 }
+
+/// Shares below this say little about the rest: a stage's first parts may be unlike the others.
+const FIRST: f64 = 0.01;
 
 impl Meter {
     /// Adds work that lies ahead.
@@ -47,6 +51,13 @@ impl Meter {
     pub fn share(&self) -> f64 {
         let (done, known) = (self.0.done.load(Relaxed), self.0.known.load(Relaxed));
         if known == 0 { 0.0 } else { (done as f64 / known as f64).min(1.0) }
+    }
+
+    /// The time left after `elapsed`, if the rest goes on as the work so far; `None` while too
+    /// little is done to tell.
+    pub fn left(&self, elapsed: Duration) -> Option<Duration> {
+        let share = self.share();
+        (share >= FIRST).then(|| elapsed.mul_f64((1.0 - share) / share))
     }
 }
 

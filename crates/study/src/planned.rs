@@ -1,12 +1,12 @@
-//! What bakes take next to what is planned: bakes sets of one kind each on one thread, without a
-//! cache, and prints seconds and bytes as measured and as planned.
+//! What bakes take next to what is planned: bakes sets of one kind each on one thread, as drafts
+//! and in default quality, without a cache, and prints seconds and bytes as measured and as
+//! planned.
 //!
 //! ```sh
 //! cargo run --profile dist -p microfacet-study -- planned
 //! cargo run --profile dist -p microfacet-study -- planned a-recipe.toml
 //! ```
 
-use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
 
@@ -16,17 +16,33 @@ use microfacet_baker::table_set::{BakeError, Target, bake, costs};
 use microfacet_baker::table_spec::Quality;
 use microfacet_tables::{Precision, encode};
 
-/// Sets by name: γ, σ and what else a recipe states of each material.
-const SETS: [(&str, &str); 6] = [
+use crate::Outcome;
+
+/// Materials by name, each a set of its own: the kinds of tables, and the corners of what their
+/// times depend on.
+const SETS: [(&str, &str); 13] = [
     ("a glass", "sigma = 0.454\ngamma = 3\nfresnel = \"mirror\""),
     ("a dielectric", "sigma = 0.3\ngamma = 2.5\nfresnel = { dielectric = 1.5 }"),
+    ("the same, heavy", "sigma = 0.3\ngamma = 1.52\nfresnel = { dielectric = 1.5 }"),
     ("an anisotropic metal", "sigma = [0.3, 0.1]\ngamma = 2.5\nfresnel = { metal = \"gold\" }"),
+    ("rough one way", "sigma = [0.6, 0.15]\ngamma = 2.7\nfresnel = \"mirror\""),
+    ("elongated, 30:1", "sigma = [0.6, 0.02]\ngamma = 3\nfresnel = \"mirror\""),
+    ("brushed, heavy", "sigma = [0.3, 0.1]\ngamma = 1.6\nfresnel = \"mirror\""),
     (
         "a range",
         "sigma = { min = 0.1, max = 0.5 }\ngamma = { min = 2, max = 4 }\nfresnel = \"mirror\"",
     ),
-    ("a tilted lobe", "sigma = [0.3, 0.2]\ntheta = [0.2, 0.1, 0]\ngamma = 3\nfresnel = \"mirror\""),
     ("GTR", "distribution = \"gtr\"\nc = 0.2\ngamma = 1.5\nfresnel = \"mirror\""),
+    ("Gauss", "distribution = \"gauss\"\nm = 0.2\nfresnel = \"mirror\""),
+    (
+        "tilted Beckmann",
+        "sigma = [0.3, 0.1]\ntheta = [0.2, 0.1, 0]\ngamma = inf\nfresnel = \"mirror\"",
+    ),
+    (
+        "tilted, heavy",
+        "sigma = [0.3, 0.1]\ntheta = [0.2, 0.1, 0]\ngamma = 1.52\nfresnel = \"mirror\"",
+    ),
+    ("tilted", "sigma = [0.3, 0.2]\ntheta = [0.2, 0.1, 0]\ngamma = 3\nfresnel = \"mirror\""),
 ];
 
 /// Fifty metals, each with a roughness and a shape of its own.
@@ -43,7 +59,7 @@ fn metals() -> String {
 }
 
 /// Prints what the module's page says.
-pub fn run(arguments: &[String]) -> Result<(), Box<dyn Error>> {
+pub fn run(arguments: &[String]) -> Outcome {
     let planned = |scene: &Scene| Plan::new(scene, Options::default());
     let mut plans: Vec<(&str, Plan)> = Vec::new();
     for path in arguments {
@@ -58,15 +74,23 @@ pub fn run(arguments: &[String]) -> Result<(), Box<dyn Error>> {
         }
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    println!("{:20} {:>8} {:>8} {:>9} {:>9}", "", "seconds", "planned", "bytes", "planned");
+    println!(
+        "{:20} {:>8} {:>8} {:>8} {:>9} {:>9}",
+        "", "", "seconds", "planned", "bytes", "planned"
+    );
     pool.install(|| {
         for (name, plan) in &plans {
-            let cost: Cost = costs(plan, Quality::Default, Precision::F32)?.into_iter().sum();
-            let start = Instant::now();
-            let set = bake(plan, Target::default())?.set;
-            let (seconds, bytes) =
-                (start.elapsed().as_secs_f64(), encode(set.provenance(), set.tables())?.len());
-            println!("{name:20} {seconds:8.2} {:8.2} {bytes:9} {:9}", cost.seconds, cost.bytes);
+            for (words, quality) in [("draft", Quality::Draft), ("default", Quality::Default)] {
+                let cost: Cost = costs(plan, quality, Precision::F32)?.into_iter().sum();
+                let start = Instant::now();
+                let set = bake(plan, Target::Quality(quality, Precision::F32))?.set;
+                let seconds = start.elapsed().as_secs_f64();
+                let bytes = encode(set.provenance(), set.tables())?.len();
+                let Cost { bytes: planned_bytes, seconds: planned } = cost;
+                println!(
+                    "{name:20} {words:>8} {seconds:8.2} {planned:8.2} {bytes:9} {planned_bytes:9}"
+                );
+            }
         }
         Ok::<(), BakeError>(())
     })?;

@@ -48,9 +48,8 @@ pub fn run(arguments: &[String]) -> Outcome {
         let mut seen = Vec::new();
         while end.recv_timeout(Duration::from_millis(20)) == Err(RecvTimeoutError::Timeout) {
             let now = start.elapsed();
-            let share = meter.share();
-            if share >= 0.01 {
-                seen.push((now, share, now.mul_f64((1.0 - share) / share)));
+            if let Some(left) = meter.left(now) {
+                seen.push((now, meter.share(), left));
             }
         }
         seen

@@ -106,18 +106,23 @@ impl Part<'_> {
     }
 }
 
-/// What the albedos that a plan offers would add.
-fn offer(plan: &Plan, quality: Quality, precision: Precision) -> Option<(usize, Cost)> {
+/// What the albedos that a plan offers would add to its cost without them.
+fn offer(
+    plan: &Plan,
+    quality: Quality,
+    precision: Precision,
+    without: Cost,
+) -> Option<(usize, Cost)> {
     if plan.offered.is_empty() {
         return None;
     }
     // What no table can hold is refused where it is asked for.
     let specs = plan.offered.iter().map(|need| need.spec(quality, precision));
     let tables = specs.map(|spec| spec.map(|spec| spec.tables())).sum::<Result<_, _>>().ok()?;
-    let all = |plan: &Plan| Some(costs(plan, quality, precision).ok()?.into_iter().sum::<Cost>());
-    let (with, without) = (Plan { albedos: plan.offered.clone(), ..plan.clone() }, all(plan)?);
-    let Cost { bytes, seconds } = all(&with)?;
-    let (bytes, seconds) = (bytes - without.bytes, seconds - without.seconds);
+    let with = Plan { albedos: plan.offered.clone(), ..plan.clone() };
+    let Cost { bytes, seconds } = costs(&with, quality, precision).ok()?.into_iter().sum();
+    let bytes = bytes.saturating_sub(without.bytes);
+    let seconds = (seconds - without.seconds).max(0.0);
     Some((tables, Cost { bytes, seconds }))
 }
 
@@ -167,7 +172,8 @@ impl<'a> Outline<'a> {
                 parts[i].names.push(&material.name);
             }
         }
-        let (total, offered) = (costs.into_iter().sum(), offer(plan, quality, precision));
+        let total = costs.into_iter().sum();
+        let offered = offer(plan, quality, precision, total);
         Ok(Self { scene, plan, parts, total, offered })
     }
 

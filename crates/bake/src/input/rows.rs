@@ -1,5 +1,6 @@
 //! The rows of a CSV, each with the line on which it begins.
 
+use std::collections::VecDeque;
 use std::io::{self, Read};
 
 use super::{Limited, MAX_ROW, Unmarked, unmarked_stream};
@@ -37,7 +38,7 @@ microfacet_core::debug_in_words!(RowError);
 /// other.
 #[derive(Debug)]
 pub struct Rows<R> {
-    reader: csv::Reader<LineFeeds<Limited<Unmarked<R>>>>,
+    reader: csv::Reader<Numbered<Limited<Unmarked<R>>>>,
 }
 
 impl<R: Read> Rows<R> {
@@ -50,13 +51,9 @@ impl<R: Read> Rows<R> {
         let reader = csv::ReaderBuilder::new()
             .has_headers(false)
             .flexible(true)
+            .trim(csv::Trim::All)
             .comment(comment)
-            .from_reader(LineFeeds {
-                input: Limited::new(input, MAX_ROW),
-                last: b'\n',
-                bytes: 0,
-                ends: 2,
-            });
+            .from_reader(Numbered::new(Limited::new(input, MAX_ROW), comment));
         Ok(Self { reader })
     }
 
@@ -73,22 +70,21 @@ impl<R: Read> Rows<R> {
     pub fn read(&mut self) -> Result<Option<Row>, RowError> {
         loop {
             self.reader.get_mut().input.restart();
-            let (start, mut fields) = (self.reader.position().line(), csv::ByteRecord::new());
-            let found = self.reader.read_byte_record(&mut fields);
-            if !found.map_err(|why| RowError::new(start, why.to_string()))? {
+            let start = self.bytes();
+            let mut fields = csv::StringRecord::new();
+            let found = self.reader.read_record(&mut fields);
+            let line = self.reader.get_mut().line_from(start);
+            let found = found.map_err(|error| match error.into_kind() {
+                csv::ErrorKind::Io(why) => RowError::new(line, why.to_string()),
+                _ => RowError::new(line, "is no text in UTF-8"),
+            })?;
+            if !found {
                 return Ok(None);
             }
             // A row ends with the first line break at the latest, if it is not in quotes.
-            let text = self.reader.get_ref();
-            let is_open = text.ends == 0 && self.bytes() == text.bytes;
-            let inside = fields.as_slice().iter().filter(|&&byte| byte == b'\n').count();
-            let line = self.reader.position().line() - inside as u64 - u64::from(!is_open);
-            if is_open {
+            if self.bytes() == self.reader.get_ref().bytes + ENDS {
                 return Err(RowError::new(line, "a quote is opened here and never closed"));
             }
-            let mut fields = csv::StringRecord::from_byte_record(fields)
-                .map_err(|_| RowError::new(line, "is no text in UTF-8"))?;
-            fields.trim();
             // A line of spaces is blank.
             if fields.len() > 1 || !fields[0].is_empty() {
                 return Ok(Some(Row { line, fields }));
@@ -97,41 +93,66 @@ impl<R: Read> Rows<R> {
     }
 }
 
-/// A stream in which every line break is one line feed, as the parser counts them, with two more at
-/// its end, which an open quote takes in.
+/// Line breaks that are put after the last byte, to see whether a quote takes them in.
+const ENDS: u64 = 2;
+
+/// A stream that notes where the lines of its text begin.
 #[derive(Debug)]
-struct LineFeeds<R> {
+struct Numbered<R> {
     input: R,
-    /// The last byte of the input.
-    last: u8,
-    /// Bytes so far, and line feeds still to come after the input.
+    comment: Option<u8>,
+    /// Bytes of the text so far, and line breaks.
     bytes: u64,
-    ends: usize,
+    breaks: u64,
+    last: u8,
+    /// Line breaks still to put after the text.
+    ends: u64,
+    /// Byte and number of the lines from which rows may still be read: neither empty nor comments.
+    lines: VecDeque<(u64, u64)>,
 }
 
-impl<R: Read> Read for LineFeeds<R> {
+impl<R> Numbered<R> {
+    fn new(input: R, comment: Option<u8>) -> Self {
+        Self { input, comment, bytes: 0, breaks: 0, last: b'\n', ends: ENDS, lines: [].into() }
+    }
+
+    /// The line of the first row from a byte on, or where there is none the last line so far.
+    fn line_from(&mut self, byte: u64) -> u64 {
+        while self.lines.front().is_some_and(|&(start, _)| start < byte) {
+            self.lines.pop_front();
+        }
+        self.lines.front().map_or(self.breaks + 1, |&(_, line)| line)
+    }
+
+    fn note(&mut self, byte: u8) {
+        let ends = |byte| matches!(byte, b'\r' | b'\n');
+        if ends(byte) {
+            // A carriage return and a line feed are one break.
+            self.breaks += u64::from(!(byte == b'\n' && self.last == b'\r'));
+        } else if ends(self.last) && self.comment != Some(byte) {
+            self.lines.push_back((self.bytes, self.breaks + 1));
+        }
+        self.last = byte;
+        self.bytes += 1;
+    }
+}
+
+impl<R: Read> Read for Numbered<R> {
     fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
-        let mut kept = 0;
-        while kept == 0 {
-            let count = self.input.read(to)?;
-            if count == 0 {
-                kept = self.ends.min(to.len());
-                to[..kept].fill(b'\n');
-                self.ends -= kept;
-                break;
-            }
-            for i in 0..count {
-                let byte = to[i];
-                // A carriage return and a line feed are one break.
-                if !(byte == b'\n' && self.last == b'\r') {
-                    to[kept] = if byte == b'\r' { b'\n' } else { byte };
-                    kept += 1;
-                }
-                self.last = byte;
+        let count = self.input.read(to)?;
+        if count == 0 {
+            let ends = to.iter_mut().take(self.ends as usize).map(|byte| *byte = b'\n').count();
+            self.ends -= ends as u64;
+            return Ok(ends);
+        }
+        for byte in &mut to[..count] {
+            self.note(*byte);
+            // The parser ends a comment with a line feed alone.
+            if self.comment.is_some() && *byte == b'\r' {
+                *byte = b'\n';
             }
         }
-        self.bytes += kept as u64;
-        Ok(kept)
+        Ok(count)
     }
 }
 
@@ -164,6 +185,17 @@ mod tests {
             assert_eq!((lines, error), (expected.map(|(line, _)| line).into(), None), "{end:?}");
         }
         assert_eq!(rows(text).0, expected.map(|(line, fields)| (line, fields.to_owned())));
+    }
+
+    #[test]
+    fn line_breaks_in_quotes_are_kept_and_bytes_are_those_of_the_text() {
+        let text = "a,\"b\r\nc\"\r\n1,2\r\n";
+        let mut rows = Rows::new(text.as_bytes(), None).unwrap();
+        assert_eq!(&rows.read().unwrap().unwrap().fields[1], "b\r\nc");
+        rows.read().unwrap();
+        assert!(rows.read().unwrap().is_none());
+        // With the line feeds that are put after it.
+        assert_eq!(rows.bytes(), text.len() as u64 + ENDS);
     }
 
     #[test]

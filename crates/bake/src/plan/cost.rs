@@ -155,8 +155,9 @@ pub(crate) fn normals_work(spec: &TableSpec) -> [f64; 2] {
 /// tables are far smaller), and for a normal of the certificate.
 const OF_DISTRIBUTIONS: [f64; 2] = [45.0, 20.0];
 
-/// How much longer the longest tails take, those of GTR.
+/// How much longer than these the longest tails take, those of GTR, and the tails of Gauss.
 const OF_LONG_TAILS: f64 = 1.9;
+const OF_SHORT_TAILS: f64 = 1.25;
 
 /// Whether D has long tails, or may have them.
 fn has_long_tails(distribution: &Distribution) -> bool {
@@ -166,7 +167,7 @@ fn has_long_tails(distribution: &Distribution) -> bool {
 
 /// Seconds of one thread to bake the four tables of a distribution, and to certify them.
 pub(crate) fn radial_work(distribution: &Distribution, level: Level) -> [f64; 2] {
-    let scale = if has_long_tails(distribution) { OF_LONG_TAILS } else { 1.25 };
+    let scale = if has_long_tails(distribution) { OF_LONG_TAILS } else { OF_SHORT_TAILS };
     let nodes = |(_, axes): &(Kind, Vec<Axis>)| match &axes[..] {
         [first, last] => first.len() * last.len(),
         _ => 0,
@@ -190,7 +191,8 @@ pub fn point_seconds(table: &Table) -> f64 {
 }
 
 /// Microseconds for a node of albedo tables under one reflectance, and the doublings of an axis
-/// that are expected before the error is met.
+/// that are expected before the error is met: such that no row of `planned` but the tilted heavy
+/// lobe is off by more than a factor of 2.
 fn of_albedos(spec: &AlbedoSpec) -> [f64; 2] {
     let lobe = &spec.lobe;
     // Rays are longer and less smooth where tails are longer.

@@ -136,13 +136,27 @@ impl fmt::Display for Place {
 }
 
 /// Why a scene description was refused.
-#[derive(thiserror::Error)]
-#[error("{place}: {kind}")]
 pub struct SceneError {
     /// The place of the error.
     pub place: Place,
     /// The cause.
     pub kind: SceneErrorKind,
+}
+
+impl fmt::Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.place, self.kind)
+    }
+}
+
+impl std::error::Error for SceneError {
+    /// The cause of a file that could not be read: the kind is part of the message already.
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match &self.kind {
+            SceneErrorKind::Io(why) => Some(why),
+            _ => None,
+        }
+    }
 }
 
 /// The kinds of [`SceneError`].

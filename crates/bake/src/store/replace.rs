@@ -206,14 +206,18 @@ impl Replacement {
             self.all.push((path.into(), None));
             return Ok(());
         }
-        let staged = to.stage(write)?;
-        if let (Ok(at), Some(file)) = (fs::canonicalize(folder_of(&to.path)), to.path.file_name())
-            && let Some(other) = self.places.insert(at.join(file), path.into())
-        {
+        let place = match (fs::canonicalize(folder_of(&to.path)), to.path.file_name()) {
+            (Ok(at), Some(file)) => Some(at.join(file)),
+            _ => None,
+        };
+        if let Some(other) = place.as_ref().and_then(|place| self.places.get(place)) {
             let why =
                 format!("leads to the same file as {}; remove one of the links", other.display());
             return refused(ErrorKind::InvalidInput, why);
         }
+        let staged = to.stage(write)?;
+        // Not before: what could not be staged may be tried again.
+        self.places.extend(place.map(|place| (place, path.into())));
         self.all.push((path.into(), Some((staged, to.path))));
         Ok(())
     }

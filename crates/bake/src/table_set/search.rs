@@ -85,7 +85,9 @@ struct Candidate {
 }
 
 impl Candidate {
-    fn new(group: TableGroup) -> Self {
+    /// `known` is what the groups before it have described: their axes and layouts are not
+    /// described again.
+    fn new(group: TableGroup, known: &mut Known) -> Self {
         let at = |level: i32| {
             let work = group.work(Level(level), 1);
             [0, 1].map(|precision| Pick {
@@ -99,7 +101,8 @@ impl Candidate {
             })
         };
         let menu = group.levels().flat_map(at).collect();
-        let header = group.header(Level::DEFAULT, Precision::F32, &mut Known::default()) as f64;
+        // With the scales of fixed point, the smallest grade.
+        let header = group.header(Level::DEFAULT, PRECISIONS[0], known) as f64;
         let default_work = group.work(Level::DEFAULT, 1);
         let measured = Default::default();
         let mut new = Self { group, measured, header, default_work, spent: 0.0, menu };
@@ -200,6 +203,11 @@ impl Candidate {
     }
 }
 
+fn candidates(groups: Vec<TableGroup>) -> Vec<Candidate> {
+    let mut known = Known::default();
+    groups.into_iter().map(|group| Candidate::new(group, &mut known)).collect()
+}
+
 /// Table groups to be chosen for a budget.
 pub(super) struct Search {
     candidates: Vec<Candidate>,
@@ -209,7 +217,7 @@ pub(super) struct Search {
 
 impl Search {
     pub(super) fn new(groups: Vec<TableGroup>) -> Self {
-        Self { candidates: groups.into_iter().map(Candidate::new).collect(), ahead: 0.0 }
+        Self { candidates: candidates(groups), ahead: 0.0 }
     }
 
     /// The smallest tables whose errors are at most `max_error`.
@@ -317,8 +325,7 @@ impl Search {
 /// # Errors
 /// [`BakeError`] for a plan that is none.
 pub fn smallest_bytes(plan: &Plan) -> Result<usize, BakeError> {
-    let candidates: Vec<Candidate> =
-        TableGroup::apart(plan)?.into_iter().map(Candidate::new).collect();
+    let candidates = candidates(TableGroup::apart(plan)?);
     let least = bytes(&coarsest(&candidates, Among::All).unwrap_or_default());
     Ok(bare_bytes(&plan.provenance()) + least.ceil() as usize)
 }

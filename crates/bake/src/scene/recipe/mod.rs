@@ -70,15 +70,38 @@ pub(super) fn read(text: &str, file: &Path) -> Result<Scene, SceneError> {
 /// the top of a recipe; the first has all that may come before, such as another `material`. A text
 /// with strings of several lines, in which the same line may stand, is one part.
 fn parts(text: &str) -> Vec<Range<usize>> {
-    let has_long_strings = ["\"\"\"", "'''"].iter().any(|quotes| text.contains(quotes));
-    let headers = text.match_indices("[[material]]").map(|(at, _)| at).filter(|&at| {
-        let before = text[..at].trim_end_matches([' ', '\t']);
-        !has_long_strings && (before.is_empty() || before.ends_with('\n'))
-    });
-    let mut ends: Vec<usize> = headers.skip(1).collect();
+    let mut headers = Vec::new();
+    if !text.lines().any(begins_long_string) {
+        let mut start = 0;
+        for line in text.split_inclusive('\n') {
+            if is_header(line) {
+                headers.push(start + line.len() - line.trim_start_matches([' ', '\t']).len());
+            }
+            start += line.len();
+        }
+    }
+    let mut ends: Vec<usize> = headers.into_iter().skip(1).collect();
     ends.push(text.len());
     let starts = [0].into_iter().chain(ends.clone());
     starts.zip(ends).map(|(start, end)| start..end).collect()
+}
+
+/// Whether a line heads a material; TOML allows blanks around the brackets and the key.
+fn is_header(line: &str) -> bool {
+    let blank = [' ', '\t'];
+    let key = line.trim_start_matches(blank).strip_prefix("[[");
+    let after = key.and_then(|key| key.trim_start_matches(blank).strip_prefix("material"));
+    after.is_some_and(|after| after.trim_start_matches(blank).starts_with("]]"))
+}
+
+/// Whether a line may begin a string of several lines: not in a comment, which begins with a `#`
+/// before any string.
+fn begins_long_string(line: &str) -> bool {
+    let code = match line.split_once('#') {
+        Some((before, _)) if !before.contains(['"', '\'']) => before,
+        _ => line,
+    };
+    code.contains("\"\"\"") || code.contains("'''")
 }
 
 /// Reads it part by part, and at most so many materials; the first part with an error ends it.
@@ -154,7 +177,9 @@ impl Source<'_> {
         if self.text.len() as u64 > limits::RECIPE_PART {
             return Err(self.place(0..0).invalid(format!(
                 "from here to the next [[material]] the recipe has {} bytes, and at most {} MiB \
-                 are read at once; head each material with [[material]], and close what is open",
+                 are read at once; head each material with [[material]], close what is open, and \
+                 write strings of several lines (\"\"\" or ''') on one, since a recipe with them is \
+                 not divided",
                 self.text.len(),
                 limits::RECIPE_PART >> 20
             )));

@@ -114,3 +114,13 @@ fn each_header_begins_a_part() {
     assert!(found[0].ends_with("schlick = 1\n  ") && found[1].starts_with("[[material]] # b"));
     assert_eq!((found.concat(), found[2]), (text.clone(), A));
 }
+
+#[test]
+fn quotes_in_comments_join_no_parts_and_headers_may_have_blanks() {
+    let blanks = A.replacen("[[material]]", "[[ material\t]]", 1);
+    for text in [format!("# \"\"\"\n{A}{B}"), format!("{A}# it's '''\n{B}"), format!("{B}{blanks}")]
+    {
+        assert_eq!(parts(&text).len(), 2, "{text}");
+    }
+    assert_eq!(parts(&format!("{A}x = \"#\" + \"\"\"\n{B}")).len(), 1);
+}
