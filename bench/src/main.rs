@@ -124,9 +124,10 @@ fn run(Args { part, options }: Args) -> Result<(), Failure> {
     let (files, text, json) = match part {
         Some(Part::Paper) => {
             let paper = Paper::measure(&Tables::embedded(), &settings, stage);
-            (paper.files()?, paper.text(), paper.json())
+            let files = if options.out.is_some() { paper.files()? } else { Vec::new() };
+            (files, paper.text(), paper.json())
         }
-        None => everything(&settings)?,
+        None => everything(&settings, options.out.is_some())?,
     };
     if let Some(folder) = &options.out {
         files::write(folder, &files)?;
@@ -137,8 +138,8 @@ fn run(Args { part, options }: Args) -> Result<(), Failure> {
 /// What one run is to write, by name, and to print.
 type Results = (Vec<(&'static str, Vec<u8>)>, String, Value);
 
-/// All rivals, the sweep, and the paper.
-fn everything(settings: &Settings) -> Result<Results, Failure> {
+/// All rivals, the sweep, and the paper; files only if they are asked for.
+fn everything(settings: &Settings, files: bool) -> Result<Results, Failure> {
     let slices = Slices::bake();
     stage("rivals: times and errors");
     let rows = rows::rows(&slices, settings);
@@ -154,13 +155,17 @@ fn everything(settings: &Settings) -> Result<Results, Failure> {
         "calls": settings.calls, "rounds": settings.rounds, "seed": settings.seed,
         "rows": rows, "sweep": sweep, "figures": figures, "paper": paper.json(),
     });
-    let mut files = paper.files()?;
-    files.extend([
-        ("bench.csv", files::csv(&[], &rows)?),
-        ("bench.json", format!("{json:#}\n").into_bytes()),
-        ("bench.svg", plot::svg(&rows).into_bytes()),
-        ("sweep.csv", files::csv(&sweep::Cell::COLUMNS, &cells)?),
-    ]);
+    let files = if files {
+        let own = [
+            ("bench.csv", files::csv(&[], &rows)?),
+            ("bench.json", format!("{json:#}\n").into_bytes()),
+            ("bench.svg", plot::svg(&rows).into_bytes()),
+            ("sweep.csv", files::csv(&sweep::Cell::COLUMNS, &cells)?),
+        ];
+        own.into_iter().chain(paper.files()?).collect()
+    } else {
+        Vec::new()
+    };
     let text =
         [terminal::table(&rows), terminal::sweep(&sweep), terminal::block(&figures), paper.text()];
     Ok((files, text.join("\n"), json))

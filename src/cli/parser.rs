@@ -62,10 +62,10 @@ fn largest_gamma() -> Arg {
 /// Lets values of options begin with a minus; paths like a number only, since a forgotten path must
 /// not take the option after it.
 fn hyphens(command: Command) -> Command {
-    let hyphens = |arg: Arg| match arg.get_value_parser().type_id() == TypeId::of::<PathBuf>() {
+    let of = |arg: Arg| match arg.get_value_parser().type_id() == TypeId::of::<PathBuf>() {
         _ if arg.get_long().is_none() || !arg.get_action().takes_values() => arg,
         true => arg.allow_negative_numbers(true),
         false => arg.allow_hyphen_values(true),
     };
-    command.mut_args(hyphens).mut_subcommands(self::hyphens)
+    command.mut_args(of).mut_subcommands(hyphens)
 }

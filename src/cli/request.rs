@@ -59,11 +59,6 @@ pub(super) struct Request {
     per_set: usize,
 }
 
-/// The name of a value.
-fn name<T: PartialEq>(all: &[Named<T>], value: &T) -> &'static str {
-    all.iter().find(|(.., listed)| listed == value).map_or("", |(name, ..)| name)
-}
-
 impl Request {
     pub(super) fn quality(&self) -> Quality {
         self.quality
@@ -75,8 +70,8 @@ impl Request {
 
     /// The options as they were typed, each with a space before it; those by default are left out.
     pub(super) fn repeated(&self) -> String {
-        let quality = name(&QUALITIES, &self.quality);
-        let precision = name(&PRECISIONS, &self.precision);
+        let quality = values::name(&QUALITIES, &self.quality);
+        let precision = values::name(&PRECISIONS, &self.precision);
         let all = [
             (self.quality != Quality::Default, format!(" --quality {quality}")),
             (self.precision != Precision::F32, format!(" --precision {precision}")),

@@ -16,6 +16,11 @@ use super::{Result, anyhow, bail, ensure};
 /// another name of a value, and hidden.
 pub(super) type Named<T> = (&'static str, &'static str, T);
 
+/// The name of a value.
+pub(super) fn name<T: PartialEq>(all: &[Named<T>], value: &T) -> &'static str {
+    all.iter().find(|(.., listed)| listed == value).map_or("", |(name, ..)| name)
+}
+
 /// Parses a name as its value.
 pub(super) fn named<T: Copy + Send + Sync>(
     all: &'static [Named<T>],

@@ -84,7 +84,7 @@ pub(crate) struct Said {
 impl Said {
     fn of(args: &[&str], output: Output) -> Self {
         let [out, err] =
-            [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
+            [output.stdout, output.stderr].map(|text| String::from_utf8(text).expect("UTF-8"));
         Self { line: args.join(" "), code: output.status.code(), out, err }
     }
 

@@ -1,7 +1,7 @@
 //! The figures as tables for the terminal.
 
 use super::Paper;
-use super::integrated::{CLAIM, verdicts};
+use super::integrated::{CLAIM, MEASURES, RELATIVE, verdicts};
 use super::method::Method;
 use super::times::{GAMMAS, SIGMAS, Timing};
 use crate::rows::Quantity;
@@ -58,24 +58,17 @@ impl Paper {
         let mut methods: Vec<Method> = of.iter().map(|at| at.method).collect();
         methods.sort();
         methods.dedup();
-        let shapes = || GAMMAS.into_iter().chain([f64::INFINITY]);
+        let shapes: Vec<f64> = GAMMAS.into_iter().chain([f64::INFINITY]).collect();
         let cell = |method: Method, gamma: f64| {
             let at = of.iter().find(|at| at.method == method && at.gamma == gamma);
             at.and_then(|at| value(at)).map_or(String::new(), significant)
         };
-        let mut text = format!("{head}\n{:32}", "gamma");
-        text.extend(shapes().map(|gamma| format!("{gamma:>7}")));
-        text.push('\n');
-        for method in methods {
-            let mut line = format!("{:32}", method.name());
-            line.extend(shapes().map(|gamma| format!("{:>7}", cell(method, gamma))));
-            text += line.trim_end();
-            text.push('\n');
-        }
-        text
+        let rows = methods.into_iter().map(|method| (method.name().into(), method));
+        grid(head, &shapes, rows, |&method, gamma| cell(method, gamma))
     }
 
-    /// Each measure with its largest value, and where it keeps the paper's claim.
+    /// Each measure with its largest value, and where it keeps the paper's claim; by γ, and one of
+    /// them by σ too.
     fn integrated_text(&self) -> String {
         let claim = format!("{:.1} %", 1e2 * CLAIM);
         let [first, last] = [SIGMAS[0], SIGMAS[SIGMAS.len() - 1]];
@@ -100,7 +93,20 @@ impl Paper {
                 significant(verdict.gamma),
             );
         }
-        text
+        let percent = |measure: usize, gamma: f64, sigma: f64| {
+            let at = self.integrated.iter().find(|at| at.gamma == gamma && at.sigma == sigma);
+            at.map_or(String::new(), |at| format!("{:.3}", 1e2 * at.errors[measure]))
+        };
+        let measures = MEASURES.iter().enumerate().map(|(i, of)| (of.formula.to_string(), i));
+        let by_measure =
+            grid(&format!("in per cent, sigma {SIGMA}"), &GAMMAS, measures, |&i, gamma| {
+                percent(i, gamma, SIGMA)
+            });
+        let sigmas = SIGMAS.into_iter().map(|sigma| (format!("sigma {sigma}"), sigma));
+        let head = format!("in per cent, {}", MEASURES[RELATIVE].formula);
+        let by_sigma =
+            grid(&head, &GAMMAS, sigmas, |&sigma, gamma| percent(RELATIVE, gamma, sigma));
+        [text, by_measure, by_sigma].join("\n")
     }
 
     /// Each form of each shape.
@@ -120,6 +126,25 @@ impl Paper {
         }
         text
     }
+}
+
+/// A table of named rows over γ.
+fn grid<T>(
+    head: &str,
+    gammas: &[f64],
+    rows: impl Iterator<Item = (String, T)>,
+    cell: impl Fn(&T, f64) -> String,
+) -> String {
+    let mut text = format!("{head}\n{:32}", "gamma");
+    text.extend(gammas.iter().map(|gamma| format!("{gamma:>7}")));
+    text.push('\n');
+    for (name, row) in rows {
+        let mut line = format!("{name:32}");
+        line.extend(gammas.iter().map(|&gamma| format!("{:>7}", cell(&row, gamma))));
+        text += line.trim_end();
+        text.push('\n');
+    }
+    text
 }
 
 /// A number with three digits, or with those before its point.

@@ -37,6 +37,8 @@ fn main() {
         build.cpp(cpp).opt_level(2).std(standard).warnings_into_errors(true).extra_warnings(true);
         build.flag_if_supported("-Wpedantic").flag_if_supported("-Wconversion");
         if cpp {
+            // The header is C and C++, so that one file is compiled as both; by GCC or Clang, as
+            // of the name's ending.
             build.flag("-xc++");
         }
         build.define("PREFIX", prefix).includes([&folder, &out]).file("src/lookups.c");

@@ -5,7 +5,9 @@ use pyo3::prelude::*;
 use pyo3::types::{PyEllipsis, PySlice, PyTuple};
 
 use microfacet_sampler::bsdf::Event;
-use microfacet_sampler::{AnyBsdf, Bsdf, Conductor, ConductorFresnel, Dielectric, Metal, Plastic};
+use microfacet_sampler::{
+    AnyBsdf, Bsdf, Conductor, ConductorFresnel, Dielectric, Lobe, Metal, Plastic,
+};
 
 use crate::arrays::{Any, Cost, Input, each2, each3};
 use crate::lobe::PyLobe;
@@ -180,7 +182,7 @@ impl PyConductor {
             (words::masking(masking)?, words::compensation(compensation)?);
         let about = format!("Conductor({})", lobe.repr()?);
         let PyLobe { lobe, tables } = lobe.get();
-        let conductor = Conductor::new(lobe.clone(), fresnel)
+        let conductor = Conductor::new(Lobe::clone(lobe), fresnel)
             .with_masking(masking)
             .compensated(tables, compensation, words::stand_in(stand_in))
             .map_err(unbound)?;
@@ -209,7 +211,7 @@ impl PyDielectric {
     ) -> PyResult<PyClassInitializer<Self>> {
         let about = format!("Dielectric({}, eta={eta})", lobe.repr()?);
         let PyLobe { lobe, tables } = lobe.get();
-        let dielectric = Dielectric::new(lobe.clone(), eta)
+        let dielectric = Dielectric::new(Lobe::clone(lobe), eta)
             .map_err(unbound)?
             .with_masking(words::masking(masking)?)
             .compensated(tables, words::compensation(compensation)?, words::stand_in(stand_in))
@@ -240,7 +242,7 @@ impl PyPlastic {
         let about = format!("Plastic({}, eta={eta})", lobe.repr()?);
         let PyLobe { lobe, tables } = lobe.get();
         let plastic = Plastic::new_masked(
-            lobe.clone(),
+            Lobe::clone(lobe),
             eta,
             words::reflectance("base", base)?,
             words::masking(masking)?,

@@ -1,5 +1,7 @@
 //! What lobes of both precisions have in common: closed forms, masking and visible normals.
 
+use std::sync::Arc;
+
 use bytemuck::{cast_slice, cast_slice_mut};
 use microfacet_model::{Ellipsoid, MicrofacetDistribution as _, StudentT};
 use microfacet_sampler::{Lobe, MicrofacetDistribution as _};
@@ -11,7 +13,7 @@ use crate::words::{self, refused};
 
 /// A lobe by tables, in single precision, or by the model, in double precision.
 pub(crate) enum Kind {
-    Tables(Lobe),
+    Tables(Arc<Lobe>),
     Exact(Model),
 }
 
@@ -22,11 +24,14 @@ pub(crate) enum Model {
     Skewed(Box<Ellipsoid>),
 }
 
-/// Calls a function of whichever it is.
+/// Calls a function of whichever it is; by tables in another way, where one is given.
 macro_rules! of {
     ($kind:expr, $lobe:ident => $call:expr) => {
+        of!($kind, $lobe => $call, $lobe => $call)
+    };
+    ($kind:expr, $tables:ident => $batch:expr, $lobe:ident => $call:expr) => {
         match $kind {
-            Kind::Tables($lobe) => $call,
+            Kind::Tables($tables) => $batch,
             Kind::Exact(Model::Family($lobe)) => $call,
             Kind::Exact(Model::Skewed($lobe)) => $call,
         }
@@ -59,18 +64,15 @@ impl PyDistribution {
 
     /// Smith's masking G1(v), in [0, 1]; 0 at and below the horizon.
     fn g1<'py>(&self, v: &Any<'py>) -> PyResult<Any<'py>> {
-        if let Kind::Tables(lobe) = &self.kind {
-            return map(
-                &Input::new("v", v)?,
-                Cost::Lookup,
-                |v: &[[f32; 3]], out: &mut [[f32; 1]]| {
-                    lobe.g1_batch(cast_slice(v), out.as_flattened_mut()).expect("as many of each");
-                },
-            );
-        }
-        of!(&self.kind, lobe => {
-            each(&Input::new("v", v)?, Cost::Lookup, |v: [_; 3]| [lobe.g1(v.into())])
-        })
+        of!(&self.kind,
+            lobe => {
+                let g1 = |v: &[[f32; 3]], g1: &mut [[f32; 1]]| {
+                    lobe.g1_batch(cast_slice(v), g1.as_flattened_mut()).expect("as many of each");
+                };
+                map(&Input::new("v", v)?, Cost::Lookup, g1)
+            },
+            lobe => each(&Input::new("v", v)?, Cost::Lookup, |v: [_; 3]| [lobe.g1(v.into())])
+        )
     }
 
     /// Smith's Lambda(v) = 1/G1 - 1; infinite at and below the horizon.
@@ -97,23 +99,24 @@ impl PyDistribution {
     /// Draws visible normals m, shape (..., 3), from views v and uniform numbers u, shape (..., 2).
     ///
     /// u in [0, 1] is clamped to it. m is of unit length and above the horizon, and v.m >= 0 for
-    /// a view from above. By tables GGX is drawn from them, too, where the set has them for
-    /// gamma = 2; the model inverts distributions to rounding, in some ten microseconds each.
+    /// a view from above.
     fn sample_visible_normal<'py>(&self, v: &Any<'py>, u: &Any<'py>) -> PyResult<Any<'py>> {
-        if let Kind::Tables(lobe) = &self.kind {
-            let (v, u) = (Input::new("v", v)?, Input::new("u", u)?);
-            let sample = |v: &[[f32; 3]], u: &[[f32; 2]], m: &mut [[f32; 3]]| {
-                let done = lobe.sample_batch(cast_slice(v), u, cast_slice_mut(m));
-                done.expect("as many of each");
-            };
-            return map2(&v, &u, Cost::Lookup, sample);
-        }
-        of!(&self.kind, lobe => {
-            let (v, u) = (Input::new("v", v)?, Input::new("u", u)?);
-            let sample =
-                |v: [_; 3], u: [_; 2]| lobe.sample_visible_normal(v.into(), u).to_array();
-            each2(&v, &u, Cost::Quadrature, sample)
-        })
+        of!(&self.kind,
+            lobe => {
+                let (v, u) = (Input::new("v", v)?, Input::new("u", u)?);
+                let sample = |v: &[[f32; 3]], u: &[[f32; 2]], m: &mut [[f32; 3]]| {
+                    let done = lobe.sample_batch(cast_slice(v), u, cast_slice_mut(m));
+                    done.expect("as many of each");
+                };
+                map2(&v, &u, Cost::Lookup, sample)
+            },
+            lobe => {
+                let (v, u) = (Input::new("v", v)?, Input::new("u", u)?);
+                let sample =
+                    |v: [_; 3], u: [_; 2]| lobe.sample_visible_normal(v.into(), u).to_array();
+                each2(&v, &u, Cost::Quadrature, sample)
+            }
+        )
     }
 
     /// The density of visible normals, G1(v) max(0, v.m) D(m)/(v.n), per steradian of m.

@@ -21,7 +21,8 @@ const TOLERANCE_TILTED: f64 = 1e-6;
 /// A lobe by the model, in double precision: closed forms, quadrature, and roots to rounding.
 ///
 /// Arrays of directions have the shape (..., 3): unit vectors in the tangent frame, n = +z, away
-/// from the surface. Arguments broadcast; results are float64.
+/// from the surface. Arguments broadcast; results are float64. Visible normals are drawn by
+/// inverting distributions to rounding, in some ten microseconds each.
 #[pyclass(name = "Lobe", module = "microfacet.exact", extends = PyDistribution, subclass, frozen)]
 pub(crate) struct ExactLobe {
     model: Model,

@@ -24,10 +24,11 @@ pub(crate) fn embedded() -> Arc<Tables> {
 /// A lobe with the tables that it is from: any distribution of microfacet normals.
 ///
 /// Arrays of directions have the shape (..., 3): unit vectors in the tangent frame, n = +z, away
-/// from the surface. Arguments broadcast; results are float32.
+/// from the surface. Arguments broadcast; results are float32. GGX is drawn from tables, too, where
+/// the set has them for gamma = 2.
 #[pyclass(name = "Lobe", module = "microfacet", extends = PyDistribution, subclass, frozen)]
 pub(crate) struct PyLobe {
-    pub(crate) lobe: Lobe,
+    pub(crate) lobe: Arc<Lobe>,
     pub(crate) tables: Arc<Tables>,
 }
 
@@ -37,15 +38,15 @@ impl PyLobe {
         tables: &Arc<Tables>,
         about: String,
     ) -> PyClassInitializer<Self> {
-        let lobe = lobe.into();
-        PyDistribution::new(Kind::Tables(lobe.clone()), about)
+        let lobe = Arc::new(lobe.into());
+        PyDistribution::new(Kind::Tables(Arc::clone(&lobe)), about)
             .add_subclass(Self { lobe, tables: Arc::clone(tables) })
     }
 
     fn albedo_of(&self, form: &str, may_stand_in: bool) -> PyResult<Albedo> {
         let masking = words::masking(form)?;
         let stand_in = words::stand_in(may_stand_in);
-        self.tables.albedo_of(&self.lobe, masking, stand_in).map_err(unbound)
+        self.tables.albedo_of(&*self.lobe, masking, stand_in).map_err(unbound)
     }
 
     /// What is known of an albedo for views; cosines where they suffice.

@@ -49,6 +49,9 @@ pub struct AlbedoIntegrator {
     pub(crate) tolerance: f64,
     /// Asinh slope at which integrals over the lobe are cut off.
     pub(crate) cut: f64,
+    /// The same across the view, where tails are shorter: the share is less than
+    /// cosh^(−2k−1) √s w.
+    cut_across: f64,
 }
 
 /// The view and what depends on it alone.
@@ -99,7 +102,15 @@ impl AlbedoIntegrator {
         let tolerance = tolerance.clamp(1e-13, 1e-2);
         let cut = cut(&shape, tolerance, shape.gamma() - 1.5, 0.0, LARGEST_RAPIDITY);
         let smith = SmithTable::new(&shape, (CUT * tolerance).max(1e-13));
-        Self { shape, smith, slopes: SlopeTable::new(&shape, cut), rules: rules(), tolerance, cut }
+        Self {
+            shape,
+            smith,
+            slopes: SlopeTable::new(&shape, cut),
+            rules: rules(),
+            tolerance,
+            cut,
+            cut_across: self::cut(&shape, tolerance, shape.gamma() - 1.0, 0.0, f64::INFINITY),
+        }
     }
 
     /// ∫ π P22(r) r² dr beyond the largest rapidity, where integrals over heavy tails are cut off

@@ -167,7 +167,7 @@ pub fn survey_seconds(tables: &Tables) -> f64 {
 
 /// The estimated seconds of so many furnaces on the current threads.
 pub fn seconds(rows: usize) -> f64 {
-    // For a row: 2200 of `microfacet-bake furnace --threads 1`, 3400 of the survey.
+    // Microseconds for a row: 2200 of `microfacet-bake furnace --threads 1`, 3400 of the survey.
     on_threads(rows, 3000.0)
 }
 
@@ -233,8 +233,8 @@ fn between(axis: &Axis, range: [f64; 2], count: usize) -> Vec<f64> {
 
 /// The estimated seconds of [`walk`] on the current threads.
 pub fn walk_seconds(sigma: f64, gamma: f64, walks: usize) -> f64 {
-    // For a ray, of which long tails take many bounces: fitted to `microfacet-bake furnace
-    // --threads 1 --walks 1e5`, within a factor of two for sigma of 0.3 to 3.
+    // Microseconds for a ray, of which long tails take many bounces: fitted to `microfacet-bake
+    // furnace --threads 1 --walks 1e5`, within a factor of two for sigma of 0.3 to 3.
     on_threads(walks, 1.0 + 0.2 * sigma / (gamma - 1.5))
 }
 

@@ -135,7 +135,7 @@ pub(crate) fn on_threads(count: usize, microseconds: f64) -> f64 {
 
 /// The estimated seconds of a run on the current threads.
 pub fn seconds(configurations: usize, options: Options) -> f64 {
-    // For the grids and the integral of a configuration, and for a normal: fitted to
+    // Microseconds for the grids and the integral of a configuration, and for a normal: fitted to
     // `microfacet-bake validate --threads 1` with 1e3 and 1e6 samples.
     on_threads(configurations, 37_000.0 + 0.17 * options.samples as f64)
 }

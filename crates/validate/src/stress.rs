@@ -156,7 +156,7 @@ impl Report {
 
 /// The estimated seconds of a run of at least so many points on the current threads.
 pub fn seconds(tables: &Tables, points: u64) -> f64 {
-    // Of `microfacet-bake validate --stress --threads 1` for a point.
+    // Microseconds of `microfacet-bake validate --stress --threads 1` for a point.
     on_threads(points.max(corner_count(&corner_materials(tables))) as usize, 3.0)
 }
 

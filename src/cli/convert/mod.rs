@@ -87,7 +87,7 @@ impl Args {
             ("--shape", self.shape.is_some(), By::HalfAngle),
             ("--on", self.on.is_some(), By::Rmse),
         ] {
-            let (name, ..) = WAYS[way as usize];
+            let name = values::name(&WAYS, &way);
             ensure!(
                 !given || self.by.is_none_or(|by| by == way),
                 "{option} is for --by {name} only: drop one of the two"

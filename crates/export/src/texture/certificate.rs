@@ -62,7 +62,8 @@ pub fn known(
     masking: Masking,
     stage: &Stage,
 ) -> Result<Vec<Known>, ParameterError> {
-    let truths = truths(places.len(), |i| places[i], masking, stage)?;
+    let gammas = places.iter().map(|place| place.gamma);
+    let truths = truths(gammas, places.len(), |i| places[i], masking, stage)?;
     Ok(places.iter().zip(truths).map(|(&place, truth)| Known { place, truth }).collect())
 }
 

@@ -14,6 +14,8 @@ mod fit;
 mod shader;
 mod truth;
 
+use std::slice::from_ref;
+
 use half::f16;
 use microfacet_baker::progress::Stage;
 use microfacet_baker::table_spec::GAMMA_MIN;
@@ -187,7 +189,8 @@ impl TextureSpec {
     pub fn make(&self, stage: &Stage) -> Result<Texture, ParameterError> {
         let planes: Vec<Vec<f32>> = if self.fitted {
             let points = self.points();
-            let truths = truths(points.len(), |i| points[i].1, self.masking, stage)?;
+            let gammas = points.iter().map(|(_, place)| place.gamma);
+            let truths = truths(gammas, points.len(), |i| points[i].1, self.masking, stage)?;
             let filter = Filter::new(&self.axes);
             let target = |(at, place): &([f64; AXES], Place)| Target {
                 tap: filter.tap(&self.axes, at),
@@ -204,7 +207,12 @@ impl TextureSpec {
         } else {
             let texels = self.grid(|axis| axis.texels.clone());
             let at = |i| place(&self.axes, self.gamma, &texels.at(i));
-            let truths = truths(texels.len(), at, self.masking, stage)?;
+            let shapes = self.axes.iter().zip(&texels.0).find(|(axis, _)| axis.is_of_shapes());
+            let gammas: Vec<f64> = shapes.map_or(vec![self.gamma], |(axis, coordinates)| {
+                let of = |&c: &f64| place(from_ref(axis), self.gamma, &[c]).gamma;
+                coordinates.iter().map(of).collect()
+            });
+            let truths = truths(gammas.into_iter(), texels.len(), at, self.masking, stage)?;
             let plane = |channel: &Channel| truths.iter().map(|&t| channel.of(t) as f32).collect();
             self.channels.iter().map(plane).collect()
         };
@@ -296,7 +304,8 @@ pub fn check(shapes: Shapes, sigma_max: f64, size: &[usize]) -> Result<(), Strin
         Shapes::DownTo(gamma) => (gamma, 3, "GxSxT, as 32x64x64"),
     };
     let [fewest, most] = SIZES;
-    Err(if !(gamma >= GAMMA_MIN) {
+    let texels: usize = size.iter().product();
+    let why = if !(gamma >= GAMMA_MIN) {
         format!(
             "gamma = {gamma} is below {GAMMA_MIN}, the smallest shape that textures cover; raise it"
         )
@@ -320,11 +329,10 @@ pub fn check(shapes: Shapes, sigma_max: f64, size: &[usize]) -> Result<(), Strin
         format!("a texture of these shapes has {axes} sizes: {form}")
     } else if let Some(n) = size.iter().find(|n| !(fewest..=most).contains(*n)) {
         format!("a size of {n} must lie in [{fewest}, {most}]; give {form}")
-    } else if let texels = size.iter().product::<usize>()
-        && texels > MOST_TEXELS
-    {
+    } else if texels > MOST_TEXELS {
         format!("{texels} texels are more than {MOST_TEXELS}; name smaller sizes")
     } else {
         return Ok(());
-    })
+    };
+    Err(why)
 }

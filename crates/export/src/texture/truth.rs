@@ -77,8 +77,10 @@ pub struct Truth {
     pub mirror: f64,
 }
 
-/// The albedos of `count` places, each a step of the stage; all of them views, or all averages.
+/// The albedos of `count` places of these shapes, each a step of the stage; all of them views, or
+/// all averages. A place is computed where it is used: a large texture has 2²⁴.
 pub(super) fn truths(
+    gammas: impl Iterator<Item = f64>,
     count: usize,
     place: impl Fn(usize) -> Place + Sync,
     masking: Masking,
@@ -86,7 +88,7 @@ pub(super) fn truths(
 ) -> Result<Vec<Truth>, ParameterError> {
     let average = count > 0 && place(0).cos.is_none();
     let tolerance = if average { AVERAGE_TOLERANCE } else { TOLERANCE };
-    let gammas: HashSet<u64> = (0..count).map(|i| place(i).gamma.to_bits()).collect();
+    let gammas: HashSet<u64> = gammas.map(f64::to_bits).collect();
     let prepare = |gamma| {
         let shape = Shape::new(f64::from_bits(gamma))?;
         Ok((gamma, AlbedoIntegrator::new(shape, tolerance)))

@@ -178,7 +178,7 @@ impl AlbedoIntegrator {
         weight: &impl Fn(f64) -> [f64; N],
     ) -> [f64; N] {
         let mut sum = [0.0; N];
-        let cut = self.cut_across();
+        let cut = self.cut_across;
         rule.graded(End::plain(-cut), End::plain(cut), PANEL, |w, jacobian| {
             let ratio =
                 (view.lambda + view.mu * self.shape.s().sqrt() * self.signed_slope(w)) / view.beta;
@@ -278,13 +278,8 @@ impl AlbedoIntegrator {
 
     /// The ends of a chord, in w, within the cut.
     fn chord_ends(&self, view: &View, chord: &Chord) -> [f64; 2] {
-        let (half, cut) = (view.half_chord(chord.xi), self.cut_across());
+        let (half, cut) = (view.half_chord(chord.xi), self.cut_across);
         [-half, half].map(|eta| self.signed_unit((eta - chord.eta) / chord.rate).clamp(-cut, cut))
-    }
-
-    /// The cut across the view, where tails are shorter: the share is less than cosh^(−2k−1) √s w.
-    fn cut_across(&self) -> f64 {
-        cut(&self.shape, self.tolerance, self.shape.gamma() - 1.0, 0.0, f64::INFINITY)
     }
 
     /// Where l is nearest to n along a chord, and the distance within which l turns away from n,
@@ -343,7 +338,7 @@ impl AlbedoIntegrator {
             |w: f64| view.reflect(self, chord, chord.eta + chord.rate * self.signed_slope(w));
         let half = view.half_chord(chord.xi);
         let [low, high] = self.chord_ends(view, chord).map(|w| {
-            if w.abs() >= self.cut_across() {
+            if w.abs() >= self.cut_across {
                 return End::plain(w);
             }
             // l_z falls by 2 cos θ |η|/(1 + r²) per η, r being the slope: to the area that l sees,

@@ -76,8 +76,8 @@ pub(super) fn write(
                 + CROSSES * count(&lines, &at.area) as f64
                 + STRIKES * (struck + count(&leads, &at.area)) as f64
         };
-        let all = candidates([x, y], text::width(name, LETTERS));
-        let best = all.min_by(|a, b| cost(a).total_cmp(&cost(b))).expect("some places");
+        let all = candidates([x, y], text::width(name, LETTERS)).map(|at| (cost(&at), at));
+        let (_, best) = all.min_by(|a, b| a.0.total_cmp(&b.0)).expect("some places");
         let (anchor, near) = if best.right { (Anchor::Start, -1.0) } else { (Anchor::End, 1.0) };
         if !best.is_beside {
             let end = [best.start[0] + near, best.start[1]];

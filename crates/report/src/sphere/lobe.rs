@@ -2,6 +2,7 @@
 //! for where none runs.
 
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::fmt::Write;
 
 use glam::Vec3;
 use maud::{Markup, html};
@@ -151,18 +152,39 @@ fn values(lobe: &Lobe, view: f64, lights: usize) -> Vec<f64> {
     (0..lights).map(of).collect()
 }
 
-/// Points as SVG has them, without those nearer to the last one than is seen.
+/// Points as SVG has them.
 fn points(values: &[f64], most: f64) -> String {
-    const SEEN: f64 = 1.5;
-    let mut points: Vec<[f64; 2]> = Vec::new();
-    for (i, value) in values.iter().enumerate() {
+    let mut text = String::new();
+    let at = |(i, value): (usize, &f64)| {
         let (r, angle) = (REACH * value / most, angle(i, values.len()));
-        let [x, y] = [r * angle.sin(), -r * angle.cos()];
-        if points.last().is_none_or(|last| (x - last[0]).hypot(y - last[1]) > SEEN) {
-            points.push([x, y]);
+        [r * angle.sin(), -r * angle.cos()]
+    };
+    for [x, y] in thinned(&values.iter().enumerate().map(at).collect::<Vec<_>>()) {
+        write!(text, "{x:.1},{y:.1} ").expect("memory");
+    }
+    text.truncate(text.trim_end().len());
+    text
+}
+
+/// Those of the points between which straight lines stray from none by more than is seen.
+fn thinned(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    const SEEN: f64 = 0.1;
+    let strays = |[ax, ay]: [f64; 2], [bx, by]: [f64; 2], [x, y]: [f64; 2]| {
+        let along = [bx - ax, by - ay];
+        let length = along[0] * along[0] + along[1] * along[1];
+        let t = ((x - ax) * along[0] + (y - ay) * along[1]) / length.max(f64::MIN_POSITIVE);
+        let t = t.clamp(0.0, 1.0);
+        (x - ax - t * along[0]).hypot(y - ay - t * along[1]) > SEEN
+    };
+    let mut kept = vec![0];
+    for i in 1..points.len() {
+        let from = kept[kept.len() - 1];
+        if (from + 1..i).any(|j| strays(points[from], points[i], points[j])) {
+            kept.push(i - 1);
         }
     }
-    points.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect::<Vec<_>>().join(" ")
+    kept.push(points.len() - 1);
+    kept.into_iter().map(|i| points[i]).collect()
 }
 
 #[cfg(test)]
@@ -170,12 +192,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_lobe_no_wider_than_a_light_stays_as_long_as_it_is_and_a_dot_is_one_point() {
-        assert_eq!(points(&[0.0, 0.0, 2.0, 0.0, 0.0], 2.0), "-0.0,-0.0 0.0,-150.0 0.0,-0.0");
-        // A half circle of 471 pixels in steps of a degree keeps the steps that are seen.
-        let circle = points(&[1.0; 361], 1.0);
-        let count = circle.split(' ').count();
-        assert!((150..=314).contains(&count), "{count}");
-        assert!(circle.starts_with("-150.0,-0.0 ") && circle.contains(" 0.0,-150.0 "), "{circle}");
+    fn lines_between_the_points_that_are_kept_meet_those_that_are_not() {
+        let circle: Vec<[f64; 2]> = (0..=360)
+            .map(|i| f64::from(i).to_radians().sin_cos())
+            .map(|(sin, cos)| [REACH * cos, REACH * sin])
+            .collect();
+        let kept = thinned(&circle);
+        assert_eq!([kept[0], kept[kept.len() - 1]], [circle[0], circle[360]]);
+        // The chord of a sagitta of 0.1 is 11 long.
+        assert!((80..120).contains(&kept.len()), "{}", kept.len());
+        let off = |ends: &[[f64; 2]]| {
+            let middle = [0.5 * (ends[0][0] + ends[1][0]), 0.5 * (ends[0][1] + ends[1][1])];
+            REACH - middle[0].hypot(middle[1])
+        };
+        assert!(kept.windows(2).all(|ends| off(ends) < 0.11));
+        // A lobe that is no wider than a light stays as long as it is.
+        let needle = [[0.0, 0.0], [0.0, 0.0], [0.0, -150.0], [0.0, 0.0], [0.0, 0.0]];
+        assert!(thinned(&needle).contains(&[0.0, -150.0]));
     }
 }

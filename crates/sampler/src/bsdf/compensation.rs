@@ -126,7 +126,8 @@ impl<const N: usize> Returned<N> {
     }
 }
 
-/// The share of facets in the light that returns, from the means of both reflectances.
+/// The share of facets in the light that returns, from the means of their reflectance and of the
+/// factor of further bounces.
 #[inline(always)]
 fn estimate(lost: f32, single: f32, multiple: f32) -> f32 {
     let (facets, broad) = ((1.0 - lost) * single, lost * multiple);

@@ -76,8 +76,8 @@ impl Judged for Report {
 
 /// The estimated seconds of a run on the current threads.
 pub fn seconds(configurations: usize, options: Options) -> f64 {
-    // For the cells of a configuration and the integral of each, and for a light: fitted to
-    // `microfacet-bake bsdf --only chi-square --threads 1` with 1e4 and 5e5 samples.
+    // Microseconds for the cells of a configuration and the integral of each, and for a light:
+    // fitted to `microfacet-bake bsdf --only chi-square --threads 1` with 1e4 and 5e5 samples.
     on_threads(configurations, 240_000.0 + 0.7 * options.samples as f64)
 }
 

@@ -150,8 +150,8 @@ pub fn rows(pairs: &[[f64; 2]], masking: Masking) -> Vec<(Specimen, f32)> {
 
 /// The estimated seconds of so many rows on the current threads.
 pub fn seconds(rows: usize, samples: usize) -> f64 {
-    // Of a row's quadrature, and of a sample, of which every fifth row has some: 12 s for the 1,008
-    // rows of `microfacet-bake bsdf --only furnace --threads 1`.
+    // Microseconds of a row's quadrature, and of a sample, of which every fifth row has some: 12 s
+    // for the 1,008 rows of `microfacet-bake bsdf --only furnace --threads 1`.
     on_threads(rows, 7_000.0 + 0.05 * samples as f64)
 }
 

@@ -72,7 +72,7 @@ impl StudentT {
         let ([wa, wb, ..], square) = (w.to_array(), w * w);
         let terms = (low + square * high) * f32x4::new([1.0, 1.0, wa, wb]);
         let [g1_v, g1_l, ..] = (q * (terms + swap_halves(terms))).fast_min(f32x4::ONE).to_array();
-        // As in `g1`.
+        // As in `g1_of_one`.
         if cfg!(not(target_feature = "sse2")) && (g1_v.is_nan() || g1_l.is_nan()) {
             return g1_of_nan();
         }
