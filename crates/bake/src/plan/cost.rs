@@ -191,8 +191,9 @@ pub fn point_seconds(table: &Table) -> f64 {
 }
 
 /// Microseconds for a node of albedo tables under one reflectance, and the doublings of an axis
-/// that are expected before the error is met: such that no row of `planned` but the tilted heavy
-/// lobe is off by more than a factor of 2.
+/// that are expected before the error is met: the rows of `planned` are off by at most a factor
+/// of 2.1 (drafts of a lobe rough one way), but for the tilted heavy lobe, which takes a fifth, as
+/// draft a thirteenth.
 fn of_albedos(spec: &AlbedoSpec) -> [f64; 2] {
     let lobe = &spec.lobe;
     // Rays are longer and less smooth where tails are longer.
