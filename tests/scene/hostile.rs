@@ -250,9 +250,12 @@ fn includes_do_not_add_to_the_nesting() {
         let text = format!("<scene>{}{inner}{}</scene>", "<a>".repeat(120), "</a>".repeat(120));
         folder.write(&format!("{i}.xml"), text);
     }
-    assert_soon_refused(&folder, "0.xml", &["nested more than 128 deep"]);
-    let text = format!("<scene>\n{}", "<a>".repeat(128));
-    assert_refused("a.xml", &text, ":2:382", &["nested more than 128 deep"]);
+    assert_soon_refused(&folder, "0.xml", &["nested more than 256 deep"]);
+    let text = format!("<scene>\n{}", "<a>".repeat(256));
+    assert_refused("a.xml", &text, ":2:766", &["nested more than 256 deep"]);
+    let twosided = "<bsdf type='twosided'>".repeat(254) + "<bsdf type='roughconductor'/>";
+    let scene = load("a.xml", &format!("<scene>{twosided}{}</scene>", "</bsdf>".repeat(254)));
+    assert_eq!(scene.materials.len(), 1);
 }
 
 #[test]
@@ -369,15 +372,21 @@ fn pbrt_scenes_that_would_fill_the_memory_are_refused() {
 #[test]
 fn gltf_scenes_that_would_fill_the_memory_are_refused() {
     let document = |rest: &str| format!("{{'asset':{{'version':'2.0'}},{rest}}}");
-    for list in ["materials", "textures", "images", "buffers"] {
-        let text = document(&format!("'{list}':[{}{{}}]", "{},".repeat(1_100_000)));
-        let folder = Folder::new(&[("a.gltf", text)]);
-        if list == "materials" {
-            assert_soon_refused(&folder, "a.gltf", &["a.gltf", "more than 100000 materials"]);
-        } else {
-            assert_eq!(soon(&folder, "a.gltf").unwrap().materials, []);
-        }
+    let refused = |rest: &str, parts: &[&str]| {
+        assert_soon_refused(&Folder::new(&[("a.gltf", document(rest))]), "a.gltf", parts);
+    };
+    let elements = "{},".repeat(1_100_000);
+    for list in ["materials", "textures", "images", "bufferViews", "buffers", "meshes"] {
+        let part = format!("{list}: there are more than 1048576 elements");
+        refused(&format!("'{list}':[{elements}{{}}]"), &["a.gltf", &part]);
     }
+    refused(&format!("'meshes':[{}0]", "0,".repeat(30_000_000)), &["meshes", "1048576 elements"]);
+    refused(&format!("'materials':[{}{{}}]", &elements[..300_000]), &["100000 materials"]);
+    let members = many(1_100_000, |i| format!("'{i}':0,"));
+    refused(&format!("'materials':[{{{members}'a':0}}]"), &["more than 1048576 members"]);
+    let primitives = format!("'meshes':[{{'primitives':[{elements}{{}}]}}]");
+    let scene = soon_loaded("a.gltf", &document(&primitives));
+    assert_warned(&scene, "a.gltf", &["mesh 0", "primitives: ", "more than 1048576 elements"]);
     // For each of the materials it is said why the texture cannot be read, which quotes it.
     let material = "{'pbrMetallicRoughness':{'metallicRoughnessTexture':{'index':0}}},";
     let materials = format!("'materials':[{}{{}}]", material.repeat(99_999));
@@ -451,6 +460,37 @@ fn long_words_get_no_suggestion() {
     assert!(warning.contains("nothing has the id") && warning.len() < 2000, "{}", warning.len());
 }
 
+/// It is read once for all of them.
+#[test]
+fn many_textures_of_one_large_image_are_read_soon() {
+    let material =
+        |i| format!("{{'pbrMetallicRoughness':{{'metallicRoughnessTexture':{{'index':{i}}}}}}},");
+    let (materials, textures) = (many(2000, material), "{'source':0},".repeat(2000));
+    for (start, warnings) in [("data:image/png;base64,", 2000), ("", 1)] {
+        let uri = start.to_owned() + &"A".repeat(60 << 20);
+        let text = format!(
+            "{{'asset':{{'version':'2.0'}},'materials':[{materials}{{}}],\
+             'textures':[{textures}{{}}],'images':[{{'uri':'{uri}'}}]}}"
+        );
+        let scene = soon_loaded("a.gltf", &text);
+        assert_eq!((scene.materials.len(), scene.warnings.len()), (2001, warnings));
+    }
+}
+
+/// A message may quote the scene.
+#[test]
+fn messages_have_a_length() {
+    let long = "x".repeat(1 << 20);
+    for (text, part) in [
+        (format!("{{'asset':{{'version':'{long}'}}}}"), "only version 2 is read"),
+        (format!("{{'asset':{{'version':'2.0'}},'meshes':'{long}'}}"), "meshes: invalid type"),
+        (format!("{{'{long}':0,'{long}':1}}"), "a second member"),
+    ] {
+        let error = soon(&Folder::new(&[("a.gltf", text)]), "a.gltf").unwrap_err().to_string();
+        assert!(error.contains(part) && error.len() < 2000, "{} bytes, no {part}", error.len());
+    }
+}
+
 /// Every lookup by name is by an index.
 #[test]
 fn documents_of_many_nodes_take_linear_time() {
@@ -486,16 +526,20 @@ fn what_is_not_understood_is_bounded() {
     assert!(scene.ignored.iter().all(|ignored| ignored.reason.len() < 1100));
     // References to nothing, and members, inputs and properties that nothing has.
     let refs = many(100_000, |i| format!("<ref id='{far}{i}'/>"));
-    let members = many(1_000_000, |i| format!("'a{i}':0,"));
+    let gltf = |materials: &str| {
+        format!("{{'asset':{{'version':'2.0'}},'materials':[{materials}{{'name':'m'}}]}}")
+    };
+    let members = |count: usize| many(count, |i| format!("'a{i}':0,"));
+    // Of one material a hundred are warned of.
+    let one = soon_loaded("a.gltf", &gltf(&format!("{{{}'b':0}},", members(1_000_000))));
+    assert_eq!(one.warnings.len(), 100);
+    let each = format!("{}'b':0", members(100));
     let inputs = |word: &str| many(100_000, |i| format!("<input name='{word}{i}'/>"));
     let (known, other) = (inputs("known"), inputs("other"));
     let properties = many(100_000, |i| format!("<float name='a{i}' value='1'/>"));
     for (name, text) in [
         ("a.xml", format!("<scene><shape type='cube'>{refs}</shape></scene>")),
-        (
-            "a.gltf",
-            format!("{{'asset':{{'version':'2.0'}},'materials':[{{{members}'name':'m'}}]}}"),
-        ),
+        ("a.gltf", gltf(&format!("{{{each}}},").repeat(1000))),
         (
             "a.mtlx",
             format!(

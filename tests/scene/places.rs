@@ -57,6 +57,37 @@ fn in_mitsuba_scenes() {
 }
 
 #[test]
+fn in_xml_that_is_not_well_formed() {
+    for (marked, message) in [
+        ("<scene>\n\n  <bsdf type=$x id='a'/></scene>", "must be enclosed in"),
+        ("<scene>\n<a b$/></scene>", "followed by `=`"),
+        ("<scene>\n<a b=$/></scene>", "followed by an attribute value"),
+        ("<scene>\n</scene>\n $é", "text stands outside the root"),
+        ("$junk <scene/>", "text stands outside the root"),
+        ("<!-- é -->\n$<![CDATA[ a ]]><scene/>", "text stands outside the root"),
+        ("<scene/>\n$&amp;", "text stands outside the root"),
+        ("<scene>\n<$></></scene>", "no name"),
+        ("<scene>\n<a $b:='1'/></scene>", "no name"),
+        ("<scene>\n<bsdf type='é' $type='b'/></scene>", "second attribute \"type\""),
+        ("<scene>\n<a xmlns:b='1' $xmlns:b='2'/></scene>", "second attribute \"xmlns:b\""),
+        ("\n$<!DOCTYPE scene [<!ENTITY x SYSTEM 'm.xml'>]><scene>&x;</scene>", "entities"),
+        ("\n$<!DOCTYPE scene SYSTEM 'scene.dtd'><scene>&x;</scene>", "entities"),
+    ] {
+        check("s.xml", marked, message);
+    }
+    // What no reader of a renderer looks at.
+    let metal = "<bsdf type='roughconductor'/>";
+    for text in [
+        format!("<scene>\0&nbsp; & <![CDATA[ & ]]>{metal}</scene>"),
+        format!("<scene a='1'b='2'>{metal}</scene>"),
+        format!("<!DOCTYPE scene>\n<scene><1/>{metal}</scene> \n"),
+        format!("<scene x:a='1' y:a='2'>{metal}</scene>"),
+    ] {
+        assert_eq!(load("s.xml", &text).materials.len(), 1, "{text}");
+    }
+}
+
+#[test]
 fn in_materialx_documents() {
     check("s.mtlx", "$<s/>\n", "is not the root");
     check("s.mtlx", "<materialx version='1.38'>\n\n<!-- é\n-->é<a>$</b>", "expected `</a>`");

@@ -5,13 +5,13 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use microfacet_baker::scene::{
-    Format, Ignored, LobeSpec, Masking, Material, Names, Origin, Place, Reflectance, Roughness,
-    Scene, SceneError, SceneErrorKind, did_you_mean,
+    Format, Ignored, LobeSpec, MOST_CANDIDATES, Masking, Material, Names, Origin, Place,
+    Reflectance, Roughness, Scene, SceneError, SceneErrorKind, did_you_mean,
 };
 use microfacet_tables::Interval;
 
 use crate::Result;
-use crate::limits;
+use crate::limits::{self, Budget};
 use crate::texture::{self, Channel, Encoding, Textures};
 
 /// γ of GGX (Trowbridge-Reitz).
@@ -77,6 +77,8 @@ pub(super) struct Builder {
     /// How often each name was requested.
     names: Names,
     warned: HashSet<String>,
+    /// Names that may still be compared for suggestions.
+    hints: Budget,
     pub(super) textures: Textures,
 }
 
@@ -87,6 +89,7 @@ impl Builder {
             scene: Scene::default(),
             names: Names::default(),
             warned: HashSet::new(),
+            hints: Budget::new(limits::HINTS),
             textures: Textures::default(),
         }
     }
@@ -182,7 +185,9 @@ impl Builder {
             Err(SceneError { place: at, kind: SceneErrorKind::Invalid(why) }) => {
                 // The place of a part of the material; its own is said anyway.
                 let why = if at == *place { why } else { format!("{at}: {why}") };
-                self.not_understood(name, kind, place, &why)
+                // So is the kind.
+                let own = why.strip_prefix(kind).and_then(|why| why.strip_prefix(": "));
+                self.not_understood(name, kind, place, own.unwrap_or(&why))
             }
             read => read,
         }
@@ -220,18 +225,21 @@ impl Builder {
         }
     }
 
-    /// The text "; did you mean `x`?", or an empty one, as by [`did_you_mean`]; also empty in a
-    /// scene of very many problems, since each takes time.
+    /// The text "; did you mean `x`?", or an empty one, as by [`did_you_mean`]; also empty
+    /// after a while in a scene of very many unknown names, since each takes time.
     pub(super) fn did_you_mean<'a>(
         &self,
         word: &str,
         candidates: impl IntoIterator<Item = &'a str>,
     ) -> String {
-        if self.scene.warnings.len() + self.scene.ignored.len() > limits::HINTS {
+        if self.hints.left() == 0 {
             return String::new();
         }
-        let candidates: Vec<&str> = candidates.into_iter().take(limits::HINT_NAMES).collect();
-        did_you_mean(word, &candidates)
+        let candidates: Vec<&str> = candidates.into_iter().take(MOST_CANDIDATES).collect();
+        match self.hints.take(candidates.len() as u64) {
+            true => did_you_mean(word, &candidates),
+            false => String::new(),
+        }
     }
 
     /// Warns of a parameter that is not among those `known` of its `owner`: it is not read.

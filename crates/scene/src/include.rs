@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use flate2::read::MultiGzDecoder;
 
 use microfacet_baker::input;
-use microfacet_baker::scene::Place;
+use microfacet_baker::scene::{Lines, Place};
 
 use crate::Result;
 use crate::builder::Builder;
@@ -130,7 +130,9 @@ impl Includes {
                     file.display()
                 )));
             }
-            read => read.map_err(|error| Place::file(file).io(error))?,
+            Err(error) if text.is_empty() => return Err(Place::file(file).io(error)),
+            // Damage in a packed file is behind what could be unpacked.
+            read => read.map_err(|error| Lines::new(file, &text).place(text.len()).io(error))?,
         };
         self.charge(text.len(), place)?;
         let mark = text.len() - input::unmarked(&text).len();

@@ -9,6 +9,8 @@ pub(crate) use microfacet_baker::scene::Budget;
 /// Bytes of XML or of JSON, with all that is included and substituted. Most of the JSON of a glTF
 /// scene may be images and geometry in base64.
 pub(crate) const TEXT: u64 = 128 << 20;
+/// Elements of a list of a glTF scene, and members of an object; 100 bytes each.
+pub(crate) const ENTRIES: usize = 1 << 20;
 /// Bytes of a pbrt scene, unpacked and with all that is included, most of which is geometry.
 pub(crate) const PBRT: u64 = 1 << 30;
 /// Bytes of the materials and textures of a pbrt scene. Short parameters take 30 times as much.
@@ -16,10 +18,11 @@ pub(crate) const PBRT_HELD: u64 = 16 << 20;
 /// Parameters of one pbrt directive, and of all attributes in force; folders that a Mitsuba scene
 /// adds with `<path>`, in each of which every file is looked for.
 pub(crate) const PARAMETERS: usize = 64;
-/// Elements and attributes of XML, with all that is included; 250 bytes each.
+/// Elements and attributes of XML, with all that is included; up to 250 bytes each.
 pub(crate) const XML_PARTS: u64 = 3 << 20;
-/// Elements, included files and textures or nodes inside each other, which are followed by
-/// recursion.
+/// Elements of XML inside each other, which are followed by recursion.
+pub(crate) const XML_DEPTH: usize = 256;
+/// Included files, and textures or nodes, inside each other, likewise.
 pub(crate) const DEPTH: usize = 128;
 /// Included files, each as often as it is included.
 pub(crate) const INCLUDES: usize = 10_000;
@@ -33,10 +36,10 @@ pub(crate) const NODES: u64 = 1 << 20;
 pub(crate) const MESSAGE: usize = 1024;
 /// Warnings of a scene; one more says that there are further ones.
 pub(crate) const WARNINGS: usize = 10_000;
-/// Warnings and materials left out after which no similar names are suggested, and names that are
-/// compared for one suggestion: each takes up to 10 µs.
-pub(crate) const HINTS: usize = 100;
-pub(crate) const HINT_NAMES: usize = 2000;
+/// Unknown members of one glTF material that are warned of.
+pub(crate) const UNKNOWN: u64 = 100;
+/// Names that are compared for suggestions of similar ones: 10 000 long ones take up to a second.
+pub(crate) const HINTS: u64 = 200_000;
 /// Bytes of one image file, and of memory for decoding it: a PNG of 8192 x 8192 pixels of 16-bit
 /// RGBA.
 pub(crate) const IMAGE: u64 = 512 << 20;

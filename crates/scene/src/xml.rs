@@ -4,20 +4,25 @@
 //! The parsers of renderers check no namespaces, take a raw "<" or "&" in an attribute as a
 //! character, and a declaration wherever it stands. Documents of MaterialX have all of these:
 //! prefixes that nothing declares, tokens such as `<UDIM>` in file names, "this & that" in a
-//! description, and a space before `<?xml`. So they are read here, too.
+//! description, and a space before `<?xml`. So they are read here, too, as is what the parser does
+//! not look at: characters and names that XML does not have, attributes without a space between
+//! them, and a document type. One that declares entities is refused, since what they stand for
+//! would be left out.
 
+use std::collections::HashSet;
 use std::hash::{Hash, Hasher};
 use std::io;
 use std::path::Path;
 
 use quick_xml::Error;
 use quick_xml::escape::unescape;
+use quick_xml::events::attributes::AttrError;
 use quick_xml::events::{BytesStart, Event};
 
 use microfacet_baker::scene::{Lines, Place, SceneError, SceneErrorKind};
 
 use crate::Result;
-use crate::builder::Builder;
+use crate::builder::{Builder, shortened};
 use crate::include::Includes;
 use crate::limits::{self, Budget};
 
@@ -153,16 +158,18 @@ impl Reader {
                     if open.is_empty() && root.is_some() {
                         return Err(place.syntax("a second element follows the root"));
                     }
-                    if open.len() == limits::DEPTH {
+                    if open.len() == limits::XML_DEPTH {
                         return Err(too_deep(&place));
                     }
-                    open.push(self.element(&tag, place)?);
+                    open.push(self.element(&tag, start, &lines)?);
                 }
                 Event::End(_) => {
-                    let ended = open.pop();
+                    let Some(mut ended) = open.pop() else { continue };
+                    // Most have few children; room for four takes more than the element.
+                    ended.children.shrink_to_fit();
                     match open.last_mut() {
-                        Some(outer) => outer.children.extend(ended),
-                        None => root = ended,
+                        Some(outer) => outer.children.push(ended),
+                        None => root = Some(ended),
                     }
                 }
                 Event::Eof => {
@@ -171,26 +178,62 @@ impl Reader {
                     }
                     return root.ok_or_else(|| lines.place(0).syntax("there is no element"));
                 }
+                Event::DocType(text) if declares_entities(&text) => {
+                    let why = "the document type declares entities, which are not read; write what \
+                               they stand for in their places";
+                    return Err(lines.place(start).syntax(why));
+                }
+                Event::Text(_) | Event::CData(_) | Event::GeneralRef(_) if open.is_empty() => {
+                    let text = &text[start..xml.buffer_position() as usize];
+                    let blank = text.len() - text.trim_ascii_start().len();
+                    if blank < text.len() {
+                        let place = lines.place(start + blank);
+                        return Err(place.syntax("text stands outside the root element"));
+                    }
+                }
                 _ => {}
             }
         }
     }
 
-    /// An element that begins here, without its children.
-    fn element(&self, tag: &BytesStart<'_>, place: Place) -> Result<Element> {
+    /// An element that begins at `start`, without its children.
+    fn element(&self, tag: &BytesStart<'_>, start: usize, lines: &Lines<'_>) -> Result<Element> {
+        let place = lines.place(start);
+        // Offsets in the tag count from behind its bracket.
+        let inside = |offset: usize| lines.place(start + 1 + offset);
+        let place_of = |part: &str| inside(part.as_ptr().addr() - tag.as_ptr().addr());
+        let name = tag.local_name().into_inner().to_owned();
+        if name.is_empty() {
+            return Err(inside(0).syntax("an element has no name"));
+        }
         let mut attributes = Vec::new();
+        let mut names = HashSet::new();
         self.take(&place)?;
-        // The checks compare each with each.
+        // The parser's own check compares each with each.
         for attribute in tag.attributes().with_checks(false) {
-            let attribute = attribute.map_err(|error| place.syntax(error.to_string()))?;
+            let attribute = attribute.map_err(|error| {
+                let why = error.to_string();
+                let why = why.split_once(": ").map_or(&why[..], |(_, why)| why);
+                inside(offset(&error)).syntax(why)
+            })?;
             self.take(&place)?;
+            let key = attribute.key.into_inner();
+            if !names.insert(key) {
+                let (name, second) = (shortened(&name), shortened(key));
+                let why =
+                    format!("<{name}> has a second attribute \"{second}\"; remove one of them");
+                return Err(place_of(key).syntax(why));
+            }
             if attribute.key.as_namespace_binding().is_none() {
                 let name = attribute.key.local_name().into_inner().to_owned();
+                if name.is_empty() {
+                    return Err(place_of(key).syntax("an attribute has no name"));
+                }
                 attributes.push((name, unescaped(&attribute.value)));
             }
         }
-        let tag = tag.local_name().into_inner().to_owned();
-        Ok(Element { tag, attributes, children: Vec::new(), place })
+        attributes.shrink_to_fit();
+        Ok(Element { tag: name, attributes, children: Vec::new(), place })
     }
 
     /// Counts an element or an attribute.
@@ -204,6 +247,22 @@ impl Reader {
             limits::XML_PARTS
         )))
     }
+}
+
+/// Where in a tag an error is.
+fn offset(error: &AttrError) -> usize {
+    match *error {
+        AttrError::ExpectedEq(offset)
+        | AttrError::ExpectedValue(offset)
+        | AttrError::UnquotedValue(offset)
+        | AttrError::ExpectedQuote(offset, _)
+        | AttrError::Duplicated(offset, _) => offset,
+    }
+}
+
+/// Whether a document type has entities, of its own or of another file.
+fn declares_entities(text: &str) -> bool {
+    ["<!ENTITY", "SYSTEM", "PUBLIC"].iter().any(|word| text.contains(word))
 }
 
 /// The value of an attribute, in which an ampersand that begins no reference stands for itself.
@@ -238,7 +297,7 @@ fn is_malformed(error: &SceneError) -> bool {
 
 /// The error for elements that are nested too deep.
 pub(super) fn too_deep(place: &Place) -> SceneError {
-    place.syntax(format!("elements are nested more than {} deep", limits::DEPTH))
+    place.syntax(format!("elements are nested more than {} deep", limits::XML_DEPTH))
 }
 
 #[cfg(test)]

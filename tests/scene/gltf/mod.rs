@@ -194,6 +194,14 @@ fn an_image_that_cannot_be_read_is_the_full_range() {
 }
 
 #[test]
+fn a_name_may_have_an_apostrophe() {
+    let text = r#"{"asset": {"version": "2.0"}, "materials": [{"name": "the baker's"}]}"#;
+    let folder = Folder::new::<&str>(&[]);
+    std::fs::write(folder.path("a.gltf"), text).unwrap();
+    assert_eq!(names(&folder.load("a.gltf").unwrap()), ["the baker's"]);
+}
+
+#[test]
 fn a_version_may_lack_its_minor_number() {
     let text = document("{}", "").replace("'2.0'", "'2'");
     assert_eq!(names(&load("a.gltf", &text)), ["material 0"]);
@@ -211,6 +219,9 @@ fn what_is_not_gltf_is_refused() {
     case("{}", "", &["asset.version", "glTF 1.0"]);
     case("{'asset': {'version': '3.0'}}", "", &["glTF 3.0", "version 2"]);
     case("{'materials': {'a': {}}}", "", &["glTF 1.0", "gltf-pipeline -i old.gltf"]);
+    let lists = document("{}", ", 'meshes': {'a': {}}");
+    case(&lists, "", &["meshes: an object", "glTF 1.0", "gltf-pipeline -i old.gltf"]);
+    case(&document("{}", ", 'asset': {}"), "", &["a second member asset;", "remove one"]);
     let json = document("{}", "");
     let whole = glb(&json, b"");
     for (bytes, part) in [

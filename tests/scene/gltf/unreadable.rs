@@ -10,15 +10,29 @@ use crate::{
 fn a_value_that_cannot_be_read_costs_its_lobe_alone() {
     let pbr = |member: &str| format!("{{'name': 'm', 'pbrMetallicRoughness': {{{member}}}}}");
     let texture = |index: &str| pbr(&format!("'metallicRoughnessTexture': {{{index}}}"));
-    let rough = "(pbrMetallicRoughness): pbrMetallicRoughness: ";
+    let (pbr_of, member) = ("(pbrMetallicRoughness): ", "metallicRoughnessTexture: ");
     for (material, name, parts) in [
-        (pbr("'roughnessFactor': '0.5'"), "m", [rough, "roughnessFactor: ", "'0.5', expected f64"]),
-        (pbr("'roughnessFactor': 1e999"), "m", [rough, "roughnessFactor: number out of", "range"]),
-        (texture(""), "m", [rough, "metallicRoughnessTexture: ", "index is missing"]),
-        (texture("'index': -1"), "m", [rough, "index: -1.0 is not a whole number", "from 0"]),
+        (
+            pbr("'roughnessFactor': '0.5'"),
+            "m",
+            [pbr_of, "): roughnessFactor: ", "'0.5', expected a number"],
+        ),
+        (
+            pbr("'roughnessFactor': 1e999"),
+            "m",
+            [pbr_of, "): roughnessFactor: number out of", "range"],
+        ),
+        (texture(""), "m", [pbr_of, member, "index is missing"]),
+        (texture("'index': -1"), "m", [member, "index: -1 is not a whole number", "from 0"]),
+        (texture("'index': '0'"), "m", [member, "'0' is not a whole number", "from 0 to 2^53"]),
+        (texture("'index': {}"), "m", [member, "{} is not a whole number", "from 0 to 2^53"]),
         ("null".to_owned(), "material 0", ["(material)", "null", "an object"]),
-        // Serde takes a list for the members in their order.
         ("[]".to_owned(), "material 0", ["(material)", "sequence", "an object"]),
+        (
+            pbr("'roughnessFactor': 0.5, 'roughnessFactor': 0.2"),
+            "m",
+            [pbr_of, "): a second member roughnessFactor;", "remove one"],
+        ),
     ] {
         let scene = beside(&material, "");
         assert_not_understood(&scene, name, "a.gltf", &parts);
@@ -35,6 +49,19 @@ fn a_value_that_cannot_be_read_costs_its_lobe_alone() {
         assert_warned(&scene, "a.gltf", &parts);
         assert_eq!((names(&scene), named(&scene, "m").fresnel), (vec!["m", "good"], None));
     }
+}
+
+#[test]
+fn lists_and_numbers_of_another_kind_are_said_in_words_of_json() {
+    let case = |value: &str, part: &str| {
+        let scene =
+            beside(&format!("{{'pbrMetallicRoughness': {{'baseColorFactor': {value}}}}}"), "");
+        assert_warned(&scene, "a.gltf", &["baseColorFactor: ", part, "without its Fresnel"]);
+    };
+    case("5", "expected a list");
+    case("[1, '2', 1, 1]", "invalid type: string '2', expected a number");
+    case("[1, {}, 1, 1]", "invalid type: object, expected a number");
+    case("{}", "an object where a list is expected, as in glTF 1.0");
 }
 
 #[test]
@@ -60,7 +87,7 @@ fn a_texture_that_cannot_be_read_covers_all() {
     let image = "'textures': [{'source': 0}], 'images': [{'bufferView': 0}]";
     for (rest, why) in [
         ("'textures': [null]", "null"),
-        ("'textures': [{'source': -1}]", "source: -1.0 is not a whole number"),
+        ("'textures': [{'source': -1}]", "source: -1 is not a whole number"),
         ("'textures': [{}]", "no PNG or JPEG image"),
         ("'textures': []", "no such texture"),
         ("'textures': [{'source': 0}], 'images': []", "no such image"),
@@ -88,7 +115,7 @@ fn with_a_mesh_that_cannot_be_read_every_material_may_be_used() {
         ("{'name': 'x'}", "primitives is missing"),
         ("null", "null"),
         ("{'primitives': [{'material': 0.5}]}", "primitives: material: 0.5 is not a whole number"),
-        ("{'primitives': [{'material': -1}]}", "-1.0 is not a whole number"),
+        ("{'primitives': [{'material': -1}]}", ": -1 is not a whole number"),
         ("{'primitives': [{'material': 1e300}]}", "1e300 is not a whole number"),
     ] {
         let meshes = format!(", 'meshes': [{{'primitives': [{{'material': 1}}]}}, {mesh}]");

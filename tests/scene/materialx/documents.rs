@@ -89,8 +89,12 @@ fn tiles_count_together() {
 }
 
 #[test]
-fn what_is_mended_moves_no_place() {
-    let odd = "<materialx version='1.39' ns:a='1' ms:a='<UDIM>'>\n<q:x r:y='<UDIM>'/>\n";
+fn what_is_not_well_formed_moves_no_place() {
+    let tokens: String = (0..300).map(|i| format!(" x{i}='<UDIM>'")).collect();
+    let odd = format!(
+        "<materialx version='1.39' ns:a='1' ms:a='<UDIM>'>\
+         <a b='1 < 2'/><a{tokens}/>\n<q:x r:y='<UDIM>'/>\n"
+    );
     let scene =
         load("a.mtlx", &format!("{odd}<gltf_pbr name='a' type='surfaceshader'/></materialx>"));
     assert_eq!(names(&scene), ["a"]);

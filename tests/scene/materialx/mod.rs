@@ -19,9 +19,18 @@ fn document(content: &str) -> String {
 
 /// A node with inputs: their names, and values or connections.
 fn node(class: &str, name: &str, of_type: &str, inputs: &[(&str, &str)]) -> String {
-    let input = |(name, said): &(&str, &str)| {
-        let said = if said.contains('=') { said.to_string() } else { format!("value='{said}'") };
-        format!("<input name='{name}' {said}/>")
+    let input = |&(name, said): &(&str, &str)| {
+        if said.contains('=') {
+            return format!("<input name='{name}' {said}/>");
+        }
+        let of_type = match (name, said.split(',').count()) {
+            ("file", _) => "filename",
+            ("index", _) => "integer",
+            _ if matches!(said, "true" | "false") => "boolean",
+            (_, 3) => "color3",
+            _ => "float",
+        };
+        format!("<input name='{name}' type='{of_type}' value='{said}'/>")
     };
     let inputs: String = inputs.iter().map(input).collect();
     format!("<{class} name='{name}' type='{of_type}'>{inputs}</{class}>")
@@ -161,14 +170,15 @@ fn node_graphs_are_followed() {
     fs::write(folder.path("maps/a.png"), png()).unwrap();
     let image = node("image", "i", "float", &[("file", "a.png")]);
     let colour = |space: &str| {
-        let file = format!("value='a.png' colorspace='{space}'");
+        let file = format!("type='filename' value='a.png' colorspace='{space}'");
         node("tiledimage", "i", "color3", &[("file", &file)])
     };
-    let separate = colour("lin_rec709") + &node("separate3", "s", "multioutput", &[("in", FROM)]);
+    let separate = colour("lin_rec709") + &node("separate3", "s", "multioutput", &[("in", COLOUR)]);
     let decoded = |x: f64| ((x + 0.055) / 1.055f64).powf(2.4);
-    const FROM: &str = "nodename='i'";
-    const AMOUNT: &str = "interfacename='amount'";
-    let green = [("in", FROM), ("index", "1")];
+    const FROM: &str = "type='float' nodename='i'";
+    const COLOUR: &str = "type='color3' nodename='i'";
+    const AMOUNT: &str = "type='float' interfacename='amount'";
+    let green = [("in", COLOUR), ("index", "1")];
     for (source, tag, inputs, r) in [
         ("", "constant", &[("value", "0.3")][..], [0.3; 2]),
         ("", "constant", &[("value", AMOUNT)], [0.25; 2]),
@@ -181,7 +191,7 @@ fn node_graphs_are_followed() {
         (&image, "clamp", &[("in", FROM), ("low", "0.3")], [0.3, 0.4]),
         (&image, "max", &[("in1", FROM), ("in2", "0.3")], [0.3, 0.4]),
         (&colour("lin_rec709"), "extract", &green, [0.4, 0.8]),
-        (&separate, "dot", &[("in", "nodename='s' output='outg'")], [0.4, 0.8]),
+        (&separate, "dot", &[("in", "type='float' nodename='s' output='outg'")], [0.4, 0.8]),
         (&colour("srgb_texture"), "extract", &green, [decoded(0.4), decoded(0.8)]),
     ] {
         folder.write("a.mtlx", graph(&(source.to_owned() + &node(tag, "end", "float", inputs))));

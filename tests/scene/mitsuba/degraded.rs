@@ -239,6 +239,13 @@ fn a_property_that_a_plugin_has_not_is_warned_of() {
     let typo = ["roughconductor has no parameter `alhpa`", "did you mean `alpha`?"];
     case("roughconductor", &float("alhpa"), &typo);
     case("roughdielectric", &float("intIRO"), &["`intIRO`", "did you mean `int_ior`?"]);
+    // Beside many materials that are none of its problems.
+    let scene = beside(&format!(
+        "{}\n<bsdf type='roughconductor'>{}</bsdf>",
+        "<bsdf type='diffuse'/>".repeat(150),
+        float("alhpa")
+    ));
+    assert_warned(&scene, "a.xml:2:29", &typo);
     // The smooth one has no such property.
     case("conductor", &float("alpha"), &["conductor has no parameter `alpha`"]);
     case("principled", &float("Roughness"), &["`Roughness`", "did you mean `roughness`?"]);

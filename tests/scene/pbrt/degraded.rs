@@ -3,8 +3,8 @@
 use microfacet_baker::scene::Scene;
 
 use crate::{
-    anisotropic, assert_not_understood, assert_refused, assert_warned, isotropic, load, named,
-    names,
+    anisotropic, assert_not_understood, assert_refused, assert_says, assert_warned, isotropic,
+    load, named, names,
 };
 
 /// A good material after the text, which must be read whatever the text says.
@@ -92,6 +92,18 @@ fn names_that_nothing_defines_are_warned_of() {
     let scene = beside("Material 'mix' 'string materials' [ 'goode' 'good' ]\nShape 'sphere'");
     assert_warned(&scene, ":1:16", &["'goode' is not defined; did you mean `good`?"]);
     assert!(named(&scene, "good").used, "the other part");
+}
+
+/// The names are compared in the order of their definition, up to a limit.
+#[test]
+fn a_name_is_suggested_among_very_many() {
+    let named = |name: &str| format!("MakeNamedMaterial '{name}' 'string type' 'hair'\n");
+    let others = |count: usize| (0..count).map(|i| named(&format!("m{i}"))).collect::<String>();
+    for materials in [others(5000) + &named("velvet"), named("velvet") + &others(20_000)] {
+        let scene = load("a.pbrt", &(materials + "NamedMaterial 'velvte' Shape 'sphere'"));
+        let [warning] = &scene.warnings[..] else { panic!("{:?}", scene.warnings) };
+        assert_says(warning, &["'velvte' is not defined; did you mean `velvet`?"]);
+    }
 }
 
 #[test]

@@ -162,6 +162,24 @@ fn included_files_belong_to_the_scene() {
 }
 
 #[test]
+fn damage_in_a_packed_file_has_a_line() {
+    let mut packed = GzEncoder::new(Vec::new(), Compression::none());
+    packed.write_all("WorldBegin\n".repeat(100).as_bytes()).unwrap();
+    // The header of the file has 10 bytes, and that of its block 5.
+    let packed = &packed.finish().unwrap()[..10 + 5 + 37 * 11 + 3];
+    let error = Folder::new(&[("a.pbrt.gz", packed)]).load("a.pbrt.gz").unwrap_err().to_string();
+    assert!(error.contains("a.pbrt.gz:38:4: cannot be read"), "{error}");
+}
+
+#[test]
+fn a_quote_of_one_stroke_is_a_character() {
+    let text = r#"MakeNamedMaterial "the baker\'s \"gold\"" "string type" "conductor""#;
+    let folder = Folder::new::<&str>(&[]);
+    std::fs::write(folder.path("a.pbrt"), text).unwrap();
+    assert_eq!(names(&folder.load("a.pbrt").unwrap()), ["the baker's \"gold\""]);
+}
+
+#[test]
 fn a_missing_include_leaves_everything_in_use() {
     let scene = load(
         "a.pbrt",

@@ -13,6 +13,7 @@ use microfacet_tables::Interval;
 use super::Importer;
 use super::object::Object;
 use crate::Result;
+use crate::builder::Builder;
 use crate::limits::Budget;
 use crate::texture::{Channel, Encoding};
 use crate::{limits, texture};
@@ -35,65 +36,90 @@ impl Importer<'_> {
         if let Some(&known) = self.ranges.get(&(texture, channel)) {
             return known;
         }
-        let Self { builder, images, place, .. } = self;
-        let name = texture.to_string();
-        let range = match images.source(texture) {
-            Err(why) => builder.unread(&name, &format!("cannot be read ({})", why.kind), place),
-            Ok(Image::File(file)) => builder.image(&file, channel, Encoding::Linear, place),
-            Ok(Image::Embedded(source, image)) => {
-                // No file has this path.
-                let key = place.file.join(source.to_string());
-                let read = |left: &Budget| images.bytes(&image, left);
-                let range = builder.textures.range(&key, channel, Encoding::Linear, read);
-                range.unwrap_or_else(|reason| builder.unread(&name, &reason, place))
-            }
-        };
+        let Self { builder, images, place, read, .. } = self;
+        let range = images.source(texture).and_then(|source| {
+            // An image may be as large as the document, and of as many textures.
+            let read = read.entry((source, channel));
+            read.or_insert_with(|| images.range(source, channel, builder)).clone()
+        });
+        let unread = |reason: String| builder.unread(&texture.to_string(), &reason, place);
+        let range = range.unwrap_or_else(unread);
         self.ranges.insert((texture, channel), range);
         range
     }
 }
 
-/// The image of a texture: a file, or one with its number that is in the document or its buffers.
-enum Image<'a> {
-    File(PathBuf),
-    Embedded(u64, Object<'a>),
+/// What completes the sentence "texture x ..." where something of it is wrong.
+fn unread(why: SceneError) -> String {
+    format!("cannot be read ({})", why.kind)
 }
 
 impl<'a> Images<'a> {
-    fn source(&self, texture: u64) -> Result<Image<'a>> {
-        let texture = self.entry(&self.textures, texture, "texture")?;
-        // Images of other kinds are in extensions.
-        let none = || texture.invalid("it has no PNG or JPEG image");
-        let source = texture.index("source")?.ok_or_else(none)?;
-        let image = self.entry(&self.images, source, "image")?;
-        Ok(match image.text("uri")? {
-            Some(uri) if !uri.starts_with("data:") => Image::File(self.file(&uri)),
-            _ => Image::Embedded(source, image),
-        })
+    /// The number of the image of a texture.
+    fn source(&self, texture: u64) -> Result<u64, String> {
+        let read = || {
+            let texture = self.entry(&self.textures, texture, "texture")?;
+            // Images of other kinds are in extensions.
+            let none = || texture.invalid("it has no PNG or JPEG image");
+            texture.index("source")?.ok_or_else(none)
+        };
+        read().map_err(unread)
+    }
+
+    /// The range of a channel of an image. An error is to be said of each of its textures, and a
+    /// warning of a file is given here.
+    fn range(
+        &self,
+        source: u64,
+        channel: Channel,
+        builder: &mut Builder,
+    ) -> Result<Interval, String> {
+        let image = self.entry(&self.images, source, "image").map_err(unread)?;
+        match image.text("uri").map_err(unread)? {
+            Some(uri) if !uri.starts_with("data:") => {
+                Ok(builder.image(&self.file(&uri), channel, Encoding::Linear, self.place))
+            }
+            uri => {
+                // No file has this path.
+                let key = self.place.file.join(source.to_string());
+                let read = |left: &Budget| self.bytes(&image, uri, left);
+                builder.textures.range(&key, channel, Encoding::Linear, read)
+            }
+        }
     }
 
     /// An entry of a list by its number.
     fn entry(&self, list: &[&'a RawValue], index: u64, what: &str) -> Result<Object<'a>> {
-        let text = usize::try_from(index).ok().and_then(|index| list.get(index));
-        let text = text.ok_or_else(|| self.place.invalid(format!("there is no such {what}")))?;
-        Object::new(self.place, String::new(), text)
+        Object::new(self.place, String::new(), self.text(list, index, what)?)
     }
 
-    /// The bytes of an image that is in the document or in one of its buffers.
-    fn bytes(&self, image: &Object<'a>, left: &Budget) -> io::Result<Vec<u8>> {
+    fn text(&self, list: &[&'a RawValue], index: u64, what: &str) -> Result<&'a RawValue> {
+        let text = usize::try_from(index).ok().and_then(|index| list.get(index).copied());
+        text.ok_or_else(|| self.place.invalid(format!("there is no such {what}")))
+    }
+
+    /// The bytes of an image that is in the document, by its URI, or in one of its buffers.
+    fn bytes(&self, image: &Object<'a>, uri: Option<String>, left: &Budget) -> io::Result<Vec<u8>> {
         let said = |why: SceneError| io::Error::other(why.kind.to_string());
-        if let Some(uri) = image.text("uri").map_err(said)? {
-            return data_uri(&uri, left);
+        if let Some(uri) = uri {
+            texture::charge(left, uri.len() as u64)?;
+            return data_uri(&uri);
         }
+        // Images may share a view and a buffer as large as the document.
+        let charged = |list: &[&'a RawValue], index: u64, what: &str| {
+            let text = self.text(list, index, what).map_err(said)?;
+            texture::charge(left, text.get().len() as u64)?;
+            Object::new(self.place, String::new(), text).map_err(said)
+        };
         let view = image.required_index("bufferView").map_err(said)?;
-        let view = self.entry(&self.views, view, "buffer view").map_err(said)?;
+        let view = charged(&self.views, view, "buffer view")?;
         let buffer = view.required_index("buffer").map_err(said)?;
-        let buffer = self.entry(&self.buffers, buffer, "buffer").map_err(said)?;
+        let buffer = charged(&self.buffers, buffer, "buffer")?;
         let offset = view.index("byteOffset").map_err(said)?.unwrap_or(0);
         let length = view.required_index("byteLength").map_err(said)?;
         let (file, start) = match (buffer.text("uri").map_err(said)?, self.chunk) {
             (Some(uri), _) if uri.starts_with("data:") => {
-                let bytes = data_uri(&uri, left)?.into_iter();
+                let bytes = data_uri(&uri)?.into_iter();
                 return Ok(bytes.skip(offset as usize).take(length as usize).collect());
             }
             (Some(uri), _) => (self.file(&uri), 0),
@@ -129,8 +155,7 @@ impl<'a> Images<'a> {
 }
 
 /// The content of a `data:` URI, which glTF requires to be in base64.
-fn data_uri(uri: &str, left: &Budget) -> io::Result<Vec<u8>> {
-    texture::charge(left, uri.len() as u64)?;
+fn data_uri(uri: &str) -> io::Result<Vec<u8>> {
     let (_, text) = uri
         .split_once(";base64,")
         .ok_or_else(|| io::Error::other("the data URI is not in base64"))?;

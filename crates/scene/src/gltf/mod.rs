@@ -49,8 +49,8 @@ use microfacet_tables::Interval;
 use self::image::Images;
 use self::object::{Object, message};
 use crate::Result;
-use crate::builder::Builder;
-use crate::limits;
+use crate::builder::{Builder, shortened};
+use crate::limits::{self, Budget};
 use crate::texture::Channel;
 
 /// What a file of version 1 is, and what to do with it.
@@ -78,7 +78,10 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
             return Err(place
                 .invalid(format!("by its asset.version, or the lack of it, this is {VERSION_1}")));
         }
-        _ => return Err(place.invalid(format!("this is glTF {version}; only version 2 is read"))),
+        _ => {
+            let version = shortened(version);
+            return Err(place.invalid(format!("this is glTF {version}; only version 2 is read")));
+        }
     }
     let mut importer = Importer {
         builder: Builder::new(Format::Gltf),
@@ -93,6 +96,7 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
             buffers: document.list("buffers")?,
         },
         ranges: HashMap::new(),
+        read: HashMap::new(),
     };
     if matches!(json, Cow::Owned(_)) {
         let warning = "the JSON is not UTF-8; what is not has a \u{fffd} in its place";
@@ -149,6 +153,8 @@ struct Importer<'a> {
     images: Images<'a>,
     /// Ranges of the textures that were read.
     ranges: HashMap<(u64, Channel), Interval>,
+    /// Those of the images that were, or why there is none.
+    read: HashMap<(u64, Channel), Result<Interval, String>>,
 }
 
 /// What meshes use.
@@ -177,7 +183,7 @@ impl<'a> Importer<'a> {
             let name = name.filter(|name| !name.is_empty()).unwrap_or(number);
             let read = material.and_then(|material| {
                 check_required(&material, &required)?;
-                self.check_names(&name, "", &material);
+                self.check_names(&name, "", &material, &Budget::new(limits::UNKNOWN));
                 self.lobes(&name, &material, used)
             });
             self.builder.degrade(&name, "material", self.place, read)?;
@@ -219,13 +225,14 @@ fn use_of<'a>(place: &'a Place, mesh: &'a RawValue, used: &mut Used) -> Result<(
         return Err(mesh.invalid("primitives is missing"));
     }
     for primitive in mesh.objects("primitives")? {
+        let primitive = primitive?;
         let material = primitive.index("material")?;
         used.default |= material.is_none();
         used.materials.extend(material);
         let extensions = primitive.object_or_empty("extensions")?;
         let variants = extensions.object_or_empty("KHR_materials_variants")?;
         for mapping in variants.objects("mappings")? {
-            used.materials.insert(mapping.required_index("material")?);
+            used.materials.insert(mapping?.required_index("material")?);
         }
     }
     Ok(())

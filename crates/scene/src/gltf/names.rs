@@ -3,6 +3,7 @@
 use super::Importer;
 use super::object::Object;
 use crate::builder::{Row, names_of};
+use crate::limits::Budget;
 
 /// Members of a material (under no name) and of objects in it: those that are read, and after them
 /// those that leave every lobe as it is.
@@ -57,8 +58,14 @@ pub(super) fn extensions() -> Vec<&'static str> {
 }
 
 impl Importer<'_> {
-    /// Warns of members that are not known in an object of a material.
-    pub(super) fn check_names(&mut self, material: &str, owner: &str, object: &Object<'_>) {
+    /// Warns of members that are not known in an object of a material, as many as are `left`.
+    pub(super) fn check_names(
+        &mut self,
+        material: &str,
+        owner: &str,
+        object: &Object<'_>,
+        left: &Budget,
+    ) {
         let known = names_of(&NAMES, owner);
         // Any object may have extensions and extras.
         let is_free = |name: &str| name == "extras" || name == "extensions" && !owner.is_empty();
@@ -66,8 +73,10 @@ impl Importer<'_> {
             if known.contains(&&name[..]) {
                 // What is no object is said where it is read.
                 if let Ok(Some(inner)) = object.object(name) {
-                    self.check_names(material, name, &inner);
+                    self.check_names(material, name, &inner, left);
                 }
+            } else if !left.take(1) {
+                return;
             } else if owner == "extensions" {
                 // The beginning would make all of them alike.
                 let stem = |name| str::strip_prefix(name, KHRONOS).unwrap_or(name);

@@ -2,14 +2,20 @@
 //! no more than what it is a part of.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
-use crate::Result;
-use microfacet_baker::scene::{Place, SceneError};
-use serde::Deserialize;
+use serde::de::{Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 use serde_json::value::RawValue;
 
-/// An object, whose members are kept as their texts and take no more memory than those.
-#[derive(Clone)]
+use microfacet_baker::scene::{Place, SceneError};
+
+use super::VERSION_1;
+use crate::Result;
+use crate::builder::shortened;
+use crate::limits;
+
+/// An object, whose members are kept as their texts, which are not copied.
 pub(super) struct Object<'a> {
     place: &'a Place,
     /// The members that lead to it, each with a colon.
@@ -22,7 +28,9 @@ impl<'a> Object<'a> {
     /// The object of a text, to which the members of `path` lead.
     pub(super) fn new(place: &'a Place, path: String, text: &'a RawValue) -> Result<Self> {
         let mut object = Self { place, path, members: BTreeMap::new() };
-        object.members = object.read("", text)?;
+        let members = text.deserialize_any(Members(BTreeMap::new()));
+        object.members = members.map_err(|error| object.invalid(message(&error)))?;
+        object.check_length("", object.members.len(), "members")?;
         object.members.retain(|_, text| text.get() != "null");
         Ok(object)
     }
@@ -32,13 +40,24 @@ impl<'a> Object<'a> {
         self.place.invalid(format!("{}{}", self.path, why.as_ref()))
     }
 
+    /// Checks how many elements a list in it has, or how many members it has itself.
+    fn check_length(&self, name: &str, length: usize, what: &str) -> Result<()> {
+        if length <= limits::ENTRIES {
+            return Ok(());
+        }
+        Err(self.place.too_large(format!(
+            "{}{name}there are more than {} {what}; split the scene",
+            self.path,
+            limits::ENTRIES
+        )))
+    }
+
     fn read<T: Deserialize<'a>>(&self, name: &str, text: &'a RawValue) -> Result<T> {
-        serde_json::from_str(text.get()).map_err(|e| self.invalid(format!("{name}{}", message(&e))))
+        T::deserialize(text).map_err(|e| self.invalid(format!("{name}: {}", message(&e))))
     }
 
     fn member<T: Deserialize<'a>>(&self, name: &str) -> Result<Option<T>> {
-        let text = self.members.get(name);
-        text.map(|text| self.read(&format!("{name}: "), text)).transpose()
+        self.members.get(name).map(|text| self.read(name, text)).transpose()
     }
 
     /// An object in it; `None` if it is absent.
@@ -59,14 +78,18 @@ impl<'a> Object<'a> {
 
     /// The texts of the elements of a list, which is empty if it is absent.
     pub(super) fn list(&self, name: &str) -> Result<Vec<&'a RawValue>> {
-        Ok(self.member(name)?.unwrap_or_default())
+        let Some(text) = self.members.get(name) else { return Ok(Vec::new()) };
+        let name = format!("{name}: ");
+        let list = text.deserialize_any(Elements(Vec::new()));
+        let list = list.map_err(|error| self.invalid(name.clone() + &message(&error)))?;
+        self.check_length(&name, list.len(), "elements")?;
+        Ok(list)
     }
 
-    /// The objects in a list.
-    pub(super) fn objects(&self, name: &str) -> Result<Vec<Self>> {
-        let path = format!("{}{name}: ", self.path);
-        let of = |text: &'a RawValue| Self::new(self.place, path.clone(), text);
-        self.list(name)?.into_iter().map(of).collect()
+    /// The objects in a list, each of which takes far more memory than the text "{}".
+    pub(super) fn objects(&self, name: &str) -> Result<impl Iterator<Item = Result<Self>>> {
+        let (place, path) = (self.place, format!("{}{name}: ", self.path));
+        Ok(self.list(name)?.into_iter().map(move |text| Self::new(place, path.clone(), text)))
     }
 
     pub(super) fn number(&self, name: &str, default: f64) -> Result<f64> {
@@ -84,11 +107,19 @@ impl<'a> Object<'a> {
         name: &str,
         default: [f64; N],
     ) -> Result<[f64; N]> {
-        let Some(list) = self.member::<Vec<f64>>(name)? else { return Ok(default) };
-        list.try_into().map_err(|list: Vec<f64>| {
+        if !self.members.contains_key(name) {
+            return Ok(default);
+        }
+        let (list, mut numbers) = (self.list(name)?, default);
+        if list.len() != N {
             let count = list.len();
-            self.invalid(format!("{name}: the list has {count} numbers; it must have {N}"))
-        })
+            let why = format!("{name}: the list has {count} numbers; it must have {N}");
+            return Err(self.invalid(why));
+        }
+        for (number, text) in numbers.iter_mut().zip(list) {
+            *number = self.read(name, text)?;
+        }
+        Ok(numbers)
     }
 
     /// A colour, whose channels must be in [0, 1].
@@ -107,12 +138,15 @@ impl<'a> Object<'a> {
     pub(super) fn index(&self, name: &str) -> Result<Option<u64>> {
         // Above 2^53 not every whole number is one of these.
         const MOST: f64 = (1u64 << 53) as f64;
-        match self.member::<f64>(name)? {
-            Some(number) if !(number.fract() == 0.0 && (0.0..=MOST).contains(&number)) => {
-                Err(self
-                    .invalid(format!("{name}: {number:?} is not a whole number from 0 to 2^53")))
+        let Some(text) = self.members.get(name) else { return Ok(None) };
+        match f64::deserialize(*text) {
+            Ok(number) if number.fract() == 0.0 && (0.0..=MOST).contains(&number) => {
+                Ok(Some(number as u64))
             }
-            number => Ok(number.map(|number| number as u64)),
+            _ => {
+                let said = shortened(text.get());
+                Err(self.invalid(format!("{name}: {said} is not a whole number from 0 to 2^53")))
+            }
         }
     }
 
@@ -125,6 +159,61 @@ impl<'a> Object<'a> {
 /// What an error of the parser says, without the place at the end: it counts from where the value
 /// begins.
 pub(super) fn message(error: &serde_json::Error) -> String {
-    let text = error.to_string().replace("expected a map", "expected an object");
-    text.rsplit_once(" at line ").map_or(&text[..], |(message, _)| message).to_owned()
+    let text = error.to_string();
+    let text = text.rsplit_once(" at line ").map_or(&text[..], |(message, _)| message);
+    // What JSON has under other names than Rust.
+    let text = text.replace("invalid type: map", "invalid type: object");
+    // It may quote a whole image.
+    shortened(&text.replace("expected f64", "expected a number")).into_owned()
+}
+
+/// Collects the members of an object: one more than may be, of very many.
+struct Members<'a>(BTreeMap<String, &'a RawValue>);
+
+impl<'a> Visitor<'a> for Members<'a> {
+    type Value = BTreeMap<String, &'a RawValue>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("an object")
+    }
+
+    fn visit_map<A: MapAccess<'a>>(self, mut input: A) -> Result<Self::Value, A::Error> {
+        let Self(mut members) = self;
+        while members.len() <= limits::ENTRIES {
+            let Some(name) = input.next_key::<String>()? else { return Ok(members) };
+            if members.contains_key(&name) {
+                let why = format!("a second member {name}; remove one of them");
+                return Err(A::Error::custom(why));
+            }
+            members.insert(name, input.next_value()?);
+        }
+        while input.next_entry::<IgnoredAny, IgnoredAny>()?.is_some() {}
+        Ok(members)
+    }
+}
+
+/// Collects the elements of a list, likewise.
+struct Elements<'a>(Vec<&'a RawValue>);
+
+impl<'a> Visitor<'a> for Elements<'a> {
+    type Value = Vec<&'a RawValue>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a list")
+    }
+
+    fn visit_seq<A: SeqAccess<'a>>(self, mut input: A) -> Result<Self::Value, A::Error> {
+        let Self(mut list) = self;
+        while list.len() <= limits::ENTRIES {
+            let Some(element) = input.next_element()? else { return Ok(list) };
+            list.push(element);
+        }
+        while input.next_element::<IgnoredAny>()?.is_some() {}
+        Ok(list)
+    }
+
+    /// Version 1 has objects for the lists of version 2.
+    fn visit_map<A: MapAccess<'a>>(self, _: A) -> Result<Self::Value, A::Error> {
+        Err(A::Error::custom(format!("an object where a list is expected, as in {VERSION_1}")))
+    }
 }

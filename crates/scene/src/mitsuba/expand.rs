@@ -36,7 +36,7 @@ impl<'a> Expansion<'a> {
     }
 
     pub(super) fn element(&mut self, element: &mut Element, depth: usize) -> Result<()> {
-        if depth == limits::DEPTH {
+        if depth == limits::XML_DEPTH {
             return Err(xml::too_deep(&element.place));
         }
         self.substitute(element)?;
@@ -46,7 +46,9 @@ impl<'a> Expansion<'a> {
             _ => Ok(()),
         };
         self.builder.or_warn(read, ((), "it is left out"))?;
-        for mut child in std::mem::take(&mut element.children) {
+        let children = std::mem::take(&mut element.children);
+        element.children.reserve_exact(children.len());
+        for mut child in children {
             if child.tag == "include" {
                 element.children.extend(self.include(&mut child, depth + 1)?);
             } else {

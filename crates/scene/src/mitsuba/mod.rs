@@ -43,7 +43,7 @@ mod expand;
 mod fresnel;
 mod value;
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use microfacet_baker::scene::{Format, Scene};
@@ -87,8 +87,8 @@ fn find(folders: &[PathBuf], name: &str) -> PathBuf {
 }
 
 /// Elements by their id; `<alias>` gives one a second id.
-fn ids(root: &Element) -> HashMap<&str, &Element> {
-    let mut ids = HashMap::new();
+fn ids(root: &Element) -> BTreeMap<&str, &Element> {
+    let mut ids = BTreeMap::new();
     root.walk(&mut |element| {
         if element.tag == "alias" {
             let (old, new) = (element.attribute("id"), element.attribute("as"));
@@ -105,7 +105,7 @@ fn ids(root: &Element) -> HashMap<&str, &Element> {
 }
 
 struct Reader<'a> {
-    ids: HashMap<&'a str, &'a Element>,
+    ids: BTreeMap<&'a str, &'a Element>,
     builder: Builder,
     folders: Vec<PathBuf>,
     incomplete: bool,

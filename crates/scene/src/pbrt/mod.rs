@@ -50,7 +50,7 @@ mod references;
 mod syntax;
 mod textures;
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
@@ -100,7 +100,7 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
         names: HashMap::new(),
         defined: Vec::new(),
         held: 0,
-        textures: HashMap::new(),
+        textures: BTreeMap::new(),
         ranges: Memo::default(),
         shapes: false,
         incomplete: false,
@@ -145,7 +145,7 @@ struct Reader {
     /// Bytes of the materials and textures.
     held: u64,
     /// Float textures by name.
-    textures: HashMap<String, Rc<Definition>>,
+    textures: BTreeMap<String, Rc<Definition>>,
     /// Ranges of the textures that were evaluated.
     ranges: Memo<String>,
     shapes: bool,

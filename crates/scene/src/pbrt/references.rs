@@ -1,9 +1,10 @@
 //! References between materials: names, and the parts of mixtures.
 
-use microfacet_baker::scene::Place;
+use microfacet_baker::scene::{MOST_CANDIDATES, Place};
 
 use super::Reader;
 use super::definition::Definition;
+use crate::builder::shortened;
 use crate::references::circle;
 
 impl Reader {
@@ -18,10 +19,15 @@ impl Reader {
         // One that a NamedMaterial refers to is warned of there.
         let parts = (0..self.slots.len()).flat_map(|slot| self.parts(slot));
         let parts = parts.filter(|(name, _)| !self.names.contains_key(*name));
-        let undefined: Vec<(String, Place)> =
-            named.chain(parts).map(|(name, place)| (name.clone(), place.clone())).collect();
-        for (name, place) in undefined {
-            let warning = self.undefined(&name);
+        let known = self.defined.iter().filter_map(|&slot| {
+            let name = &self.slots[slot].definition.as_ref()?.name;
+            (self.names.get(name) == Some(&slot)).then_some(&name[..])
+        });
+        let known: Vec<&str> = known.take(MOST_CANDIDATES).collect();
+        let undefined = named.chain(parts);
+        let warnings: Vec<(Place, String)> =
+            undefined.map(|(name, place)| (place.clone(), self.undefined(name, &known))).collect();
+        for (place, warning) in warnings {
             self.builder.warn(&place, warning);
         }
 
@@ -53,12 +59,12 @@ impl Reader {
         }
     }
 
-    fn undefined(&self, name: &str) -> String {
+    fn undefined(&self, name: &str, known: &[&str]) -> String {
+        let name = &*shortened(name);
         if self.incomplete {
             return format!("material \"{name}\" is not defined in the files that were found");
         }
-        let defined = self.names.iter().filter(|&(_, &slot)| self.slots[slot].definition.is_some());
-        let hint = self.builder.did_you_mean(name, defined.map(|(name, _)| &name[..]));
+        let hint = self.builder.did_you_mean(name, known.iter().copied());
         format!("material \"{name}\" is not defined{hint}; what uses it is left out")
     }
 
