@@ -302,7 +302,16 @@ pub(super) fn too_deep(place: &Place) -> SceneError {
 
 #[cfg(test)]
 mod tests {
-    use super::unescaped;
+    use std::path::Path;
+
+    use super::{Reader, unescaped};
+
+    #[test]
+    fn an_element_has_no_spare_room() {
+        let root = Reader::new().root(Path::new("a.xml"), b"<a><b c='1'/></a>".to_vec()).unwrap();
+        assert_eq!(root.children.capacity(), 1);
+        assert_eq!(root.children[0].attributes.capacity(), 1);
+    }
 
     #[test]
     fn an_ampersand_may_begin_a_reference() {
