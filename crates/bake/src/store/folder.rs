@@ -122,6 +122,11 @@ impl OutputFolder {
 
     /// Puts a new set in the place of the old one.
     pub(super) fn exchange(&self, new: Replacement) -> Result<(), StoreError> {
+        // One writer at a time, or one might remove what another puts in place between its look and
+        // its removal, while the other removes its own: no set would be left. Where a folder cannot
+        // be locked, as on some network file systems, that stays possible.
+        let folder = fs::File::open(&self.path);
+        let _lock = folder.inspect(|folder| drop(folder.lock()));
         let old = OldSet::of(&self.path);
         let _writing = interrupt::writing();
         let new = new.commit().map_err(|(path, why)| StoreError::Io(path, why))?;
