@@ -91,7 +91,7 @@ impl Site {
 
     /// All places of a table, the last axis fastest.
     pub(crate) fn all(axes: &[Axis]) -> Vec<Self> {
-        product(axes.iter().map(|axis| &axis.nodes))
+        product(axes.iter().map(|axis| &axis.nodes[..]))
             .into_par_iter()
             .map(|at| Self::new(axes, &at))
             .collect()
@@ -99,7 +99,7 @@ impl Site {
 }
 
 /// All combinations of one number of each list, those of the last fastest.
-pub(crate) fn product<'a>(lists: impl IntoIterator<Item = &'a Vec<f64>>) -> Vec<Vec<f64>> {
+pub(crate) fn product<'a>(lists: impl IntoIterator<Item = &'a [f64]>) -> Vec<Vec<f64>> {
     lists.into_iter().fold(vec![Vec::new()], |all, list| {
         let longer =
             |at: &Vec<f64>| list.iter().map(|&x| [&at[..], &[x]].concat()).collect::<Vec<_>>();
