@@ -27,9 +27,9 @@ pub use studio::by_cosine;
 pub use tone::srgb;
 
 /// Pictures of lobes, and the one that stands for the sphere.
-const PICTURE: Film = Film { size: 240, samples: 96, seed: 1 };
+const PICTURE: Film = Film { size: 240, samples: if cfg!(test) { 3 } else { 64 }, seed: 1 };
 /// Seconds of a picture on one processor, and of the tables of a shape.
-const SECONDS: [f64; 2] = [2.5, 0.05];
+const SECONDS: [f64; 2] = [1.7, 0.05];
 
 /// What the section of the sphere is made of.
 pub(super) struct Parts {

@@ -80,9 +80,14 @@ fn the_albedo_texture_is_that_of_the_tables() {
     let mut worst: f64 = 0.0;
     for (layer, &gamma) in lost.chunks(rows * columns).zip(&subjects.stops) {
         for &row in &dense[0] {
+            let sigma = place(&axes, gamma, &[row, 0.0]).sigma;
+            if sigma < SIGMA[0] {
+                continue;
+            }
+            let albedo = set.albedo(sigma, gamma, Masking::HeightCorrelated).unwrap();
             for &column in &dense[1] {
                 let at = place(&axes, gamma, &[row, column]);
-                if at.sigma < SIGMA[0] || at.cos.unwrap() < LEAST {
+                if at.cos.unwrap() < LEAST {
                     continue;
                 }
                 let [(i, y), (j, x)] = [axes[0].locate(row), axes[1].locate(column)];
@@ -90,7 +95,6 @@ fn the_albedo_texture_is_that_of_the_tables() {
                     |i: usize| layer[columns * i + j] * (1.0 - x) + layer[columns * i + j + 1] * x;
                 let root = along(i) * (1.0 - y) + along(i + 1) * y;
                 let found = root * root;
-                let albedo = set.albedo(at.sigma, gamma, Masking::HeightCorrelated).unwrap();
                 let cos = at.cos.unwrap();
                 let v = Vec3::new((1.0 - cos * cos).max(0.0).sqrt() as f32, 0.0, cos as f32);
                 let off = (found - f64::from(albedo.lost(v))).abs();
