@@ -126,7 +126,7 @@ fn a_terminal_has_colours_unless_it_wants_none() {
 #[test]
 #[cfg(target_os = "linux")]
 fn a_terminal_shows_progress_and_clears_it() {
-    let long = "bake --threads 2 --no-albedo --quality high --no-cache --out out";
+    let long = "bake --threads 1 --no-albedo --no-cache --out out";
     let Some(text) = on_a_terminal(long, true) else { return };
     let (bars, summary) = text.split_at(text.find("baked ").expect("a summary"));
     has(bars, &["baking ", " left"]);

@@ -44,10 +44,8 @@ fn errors_are_as_promised() {
     assert!(small[0].largest < 6.5e-4 && average < 1.8e-4, "{small:?}");
     // Steps of 1/256 are too fine to matter here.
     assert!(small[0].coarse < 1.1 * small[0].largest, "{small:?}");
-    let (large, _) = of(Shapes::One(2.0), 1.0, [64, 64], Channels::E);
-    assert!(large[0].largest < 1.6e-4, "{large:?}");
-    let (heavy, _) = of(Shapes::One(1.6), 3.0, [64, 64], Channels::E);
-    assert!(heavy[0].largest < 7.3e-4, "{heavy:?}");
+    let (heavy, _) = of(Shapes::One(1.6), 3.0, [16, 16], Channels::E);
+    assert!(heavy[0].largest < 7e-3, "{heavy:?}");
     let (split, _) = of(Shapes::One(f64::INFINITY), 3.0, [16, 16], Channels::ScaleBias);
     let quantities: Vec<&str> = split.iter().map(|found| found.quantity).collect();
     assert_eq!(quantities, ["e", "bias", "scale"]);
@@ -59,6 +57,11 @@ fn errors_are_as_promised() {
 #[test]
 fn a_volume_errs_by_what_it_states() {
     let [spec, average] = specs(Shapes::DownTo(1.6), 3.0, &[4, 12, 12], Channels::E);
+    let made = [(spec, 2000), (average, 100)].map(|(spec, count)| {
+        let texture = made(&spec);
+        let stated = errors(&spec, &texture)[0].largest;
+        (spec, texture, stated, count)
+    });
     // The middles of cells, and beside.
     let last = LogShape::BAKED.coordinate(1.6);
     for (i, cell) in [0.5, 1.45, 2.5, 2.6].into_iter().enumerate() {
@@ -68,13 +71,11 @@ fn a_volume_errs_by_what_it_states() {
             let cos = view.then_some(1e-4_f64.powf(a));
             Place { gamma, sigma: (3.0 * b * b).max(1e-8), cos }
         };
-        for (spec, count) in [(&spec, 3000), (&average, 100)] {
+        for (spec, texture, stated, count) in &made {
             let view = spec.is_directional();
-            let places: Vec<Place> = (0..count).map(|j| place(i as i32 + j, view)).collect();
+            let places: Vec<Place> = (0..*count).map(|j| place(i as i32 + j, view)).collect();
             let known = known(&places, CORRELATED, &Stage::unwatched()).unwrap();
-            let texture = made(spec);
-            let found = Checks::at(spec, &known).of(&texture, |_| true)[0].largest;
-            let stated = errors(spec, &texture)[0].largest;
+            let found = Checks::at(spec, &known).of(texture, |_| true)[0].largest;
             assert!(found < 1.05 * stated, "{gamma}: {found} of {stated}");
         }
     }
@@ -84,13 +85,15 @@ fn a_volume_errs_by_what_it_states() {
 fn a_wrong_texel_is_seen() {
     let [spec, _] = specs(Shapes::One(3.0), 1.0, &[16, 16], Channels::OneMinusE);
     let good = made(&spec);
-    let before = errors(&spec, &good)[0].largest;
+    let checks = Checks::new(&spec, &Stage::unwatched()).unwrap();
+    let largest = |texture: &Texture| checks.of(texture, |_| true)[0].largest;
+    let before = largest(&good);
     for texel in [0, 15, 7 * 16 + 9, 255] {
         let mut bad = good.clone();
         bad.values[texel] += 0.02;
-        let found = errors(&spec, &bad)[0];
+        let found = largest(&bad);
         // The horizon of the smoothest is below the smallest cosine that counts.
-        assert_eq!(found.largest > 0.01 + before / 2.0, texel != 0, "{texel}: {found:?}");
+        assert_eq!(found > 0.01 + before / 2.0, texel != 0, "{texel}: {found}");
     }
 }
 
@@ -210,7 +213,7 @@ fn headers_are_named_by_any_word() {
 fn files_do_not_depend_on_threads() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    let export = ["export", "lut", "--gamma", "3", "--size", "32x24", "--format", "json,exr,ktx2"];
+    let export = ["export", "lut", "--gamma", "3", "--size", "12x9", "--format", "json,exr,ktx2"];
     ok(at, &[&export[..], &["--out", "a", "--threads", "1"]].concat());
     ok(at, &[&export[..], &["--out", "b", "--threads", "7"]].concat());
     for name in names(&at.join("a")) {

@@ -13,7 +13,7 @@ use microfacet_tables::{Index, IndexedSet};
 /// Anisotropic mirrors, each with an albedo of its own, and a round one.
 fn recipe(count: usize) -> String {
     let one = |i: usize| {
-        let (x, y, gamma) = (0.2 + 0.02 * i as f64, 0.5, 2.5 + 0.5 * (i % 2) as f64);
+        let (x, y, gamma) = (0.2 + 0.02 * i as f64, 0.5, 30 + i % 2);
         let sigma = if i == 0 { "0.3".to_owned() } else { format!("[{x}, {y}]") };
         format!(
             "[[material]]\nname = \"m{i}\"\nsigma = {sigma}\ngamma = {gamma}\nfresnel = \"mirror\"\n\n"
