@@ -230,8 +230,8 @@ impl<'a> Own<'a> {
 
 #[test]
 fn of_other_distributions_however_narrow() {
-    let usual = ["gtr:0.2,1.5", "sawicki:12"];
-    let narrow = ["gtr:0.001,3", "gauss:0.01", "schlick:0.001"];
+    let usual = ["gtr:0.2,1.5", "gauss:0.3", "schlick:0.3", "sawicki:12"];
+    let narrow = ["gtr:0.001,3", "gauss:0.01", "schlick:0.001", "sawicki:1e6"];
     for name in usual.into_iter().chain(narrow) {
         let built = name.parse::<Named>().unwrap().build().unwrap();
         let marginal = Marginal::new(&*built);
@@ -321,7 +321,7 @@ fn of_the_albedo_of_a_tilted_lobe() {
 #[test]
 fn of_the_albedo_of_an_anisotropic_lobe() {
     let lobe = Ellipsoid::new(Skew::new([0.6, 0.15], [0.0; 3]).unwrap(), 2.7).unwrap();
-    no_view_errs_by_more("sigma = [0.6, 0.15]\ngamma = 2.7", &lobe, anywhere(700));
+    no_view_errs_by_more("sigma = [0.6, 0.15]\ngamma = 2.7", &lobe, anywhere(1500));
 }
 
 /// Errors have more hills than are climbed, and a finer table has nodes in the middles of cells of
@@ -329,5 +329,5 @@ fn of_the_albedo_of_an_anisotropic_lobe() {
 #[test]
 fn of_the_albedo_of_a_brushed_lobe() {
     let lobe = Ellipsoid::new(Skew::new([0.01, 0.7], [0.0; 3]).unwrap(), 2.0).unwrap();
-    no_view_errs_by_more("sigma = [0.01, 0.7]\ngamma = 2.0", &lobe, anywhere(400));
+    no_view_errs_by_more("sigma = [0.01, 0.7]\ngamma = 2.0", &lobe, anywhere(800));
 }

@@ -38,9 +38,10 @@ fn assert_near(fitted: &Fitted, sigma_gamma: [f64; 2], of: &Material, tolerance:
 
 #[test]
 fn what_was_made_is_found_again_and_no_other_fit_is_better() {
-    let gold = [0.95, 0.72, 0.35];
+    let [gold, plastic] = [[0.95, 0.72, 0.35], [0.04; 3]];
     let cases = [
         (single("student-t:0.15,1.7", gold, [0.02; 3], 0.0), [0.15, 1.7], 1e-4),
+        (single("student-t:0.2,3", plastic, [0.4, 0.08, 0.05], 0.1), [0.2, 3.0], 2e-2),
         // The ends of both, F0 = 0 and 1, and no Lambert term.
         (single("ggx:0.02", [1.0, 0.5, 0.0], [0.0; 3], 0.1), [0.02, 2.0], 5e-3),
         (single("beckmann:0.5", [1.0, 0.5, 0.0], [0.3; 3], 0.1), [0.5, f64::INFINITY], 5e-3),

@@ -527,18 +527,21 @@ fn a_refused_bake_leaves_no_folder_behind() {
 
 #[test]
 fn albedos_of_very_many_lobes_are_refused_in_one_plan() {
-    let entry = |i: usize| {
-        format!(
-            "[[material]]\nname = \"{i}\"\nsigma = [0.5, 0.1{i:06}]\ngamma = 3\n\
-             fresnel = \"mirror\"\n"
-        )
-    };
-    let recipe: String = (0..100_001).map(entry).collect();
-    let why = Plan::new(&Scene::from_recipe_str(&recipe).unwrap(), Options::default());
-    let message = why.unwrap_err().to_string();
-    assert!(message.contains("more than 100000 ") && message.contains("--no-albedo"), "{message}");
-    // The command divides them into sets, each with a plan of its own.
     let folder = tempfile::tempdir().unwrap();
+    let refuse = |entry: fn(usize) -> String| {
+        let recipe: String =
+            (0..100_001).map(|i| format!("[[material]]\nname = \"{i}\"\n{}\n", entry(i))).collect();
+        let why = Plan::new(&Scene::from_recipe_str(&recipe).unwrap(), Options::default());
+        let message = why.unwrap_err().to_string();
+        assert!(
+            message.contains("more than 100000 ") && message.contains("--no-albedo"),
+            "{message}"
+        );
+        recipe
+    };
+    refuse(|i| format!("sigma = 0.5\ngamma = 3\nfresnel = {{ dielectric = 1.1{i:06} }}"));
+    let recipe = refuse(|i| format!("sigma = [0.5, 0.1{i:06}]\ngamma = 3\nfresnel = \"mirror\""));
+    // The command divides them into sets, each with a plan of its own.
     std::fs::write(folder.path().join("a.toml"), recipe).unwrap();
     let text = ok(folder.path(), &["plan", "a.toml"]);
     assert!(text.contains("100001 materials in 11 numbered sets"), "{text}");

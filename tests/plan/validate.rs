@@ -138,8 +138,8 @@ fn honest_sets_pass_at_every_precision_and_wrong_ones_do_not() {
         ("draft", "--quality draft"),
     ] {
         desk.ok(&format!("bake --no-cache --out {set} {how}"));
-        passes(&desk, &format!("{set} --configurations 20"));
-        let few = "--samples 20000 --configurations 20 --perturb-gamma 1.05";
+        passes(&desk, &format!("{set} --configurations 40"));
+        let few = "--samples 20000 --configurations 40 --perturb-gamma 1.05";
         desk.run(&format!("validate {set} {few}")).ends(1);
     }
     let set = Tables::from_bytes(&desk.read("u16/tables.safetensors")).unwrap();
@@ -149,5 +149,5 @@ fn honest_sets_pass_at_every_precision_and_wrong_ones_do_not() {
         table.precision = Precision::F32;
     }
     desk.write("wrong.safetensors", encode(set.provenance(), &tables).unwrap());
-    desk.run("validate wrong.safetensors --samples 20000 --configurations 20").ends(1);
+    desk.run("validate wrong.safetensors --samples 20000 --configurations 40").ends(1);
 }

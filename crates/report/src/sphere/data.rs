@@ -9,7 +9,7 @@ use flate2::write::DeflateEncoder;
 use glam::Vec3;
 use half::f16;
 use microfacet_core::Masking;
-use microfacet_export::texture::{Along, Place, TexelAxis, place, shader_coordinates};
+use microfacet_export::texture::{Along, TexelAxis, place, shader_coordinates};
 use microfacet_export::{Shape, WIDTH, append_some};
 use microfacet_sampler::{ConductorFresnel, MaterialError, Metal, StudentT, Tables};
 use microfacet_tables::{MaterialEntry, Reflectance};
@@ -142,15 +142,14 @@ fn albedos(tables: &Tables, gamma: f64) -> Result<(Vec<f16>, Vec<f32>), Material
     let axes = axes();
     let mut lost = Vec::with_capacity(TEXELS.iter().product());
     for &s in &axes[0].texels {
-        let row = axes[1].texels.iter().map(|&t| place(&axes, gamma, &[s, t]));
-        let row: Vec<Place> = row.collect();
-        let sigma = row[0].sigma.max(StudentT::SIGMAS[0]);
+        // One σ a row: binding an albedo takes as long as hundreds of lookups.
+        let sigma = place(&axes, gamma, &[s, 0.0]).sigma.max(StudentT::SIGMAS[0]);
         let albedo = tables.albedo(sigma, gamma, masking)?;
-        lost.extend(row.iter().map(|place| {
-            let cos = place.cos.unwrap_or(1.0) as f32;
+        for &t in &axes[1].texels {
+            let cos = place(&axes, gamma, &[s, t]).cos.unwrap_or(1.0) as f32;
             let v = Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos);
-            f16::from_f32(albedo.lost(v).sqrt())
-        }));
+            lost.push(f16::from_f32(albedo.lost(v).sqrt()));
+        }
     }
     let average = |i: usize| {
         let root = i as f64 / AVERAGES as f64;
