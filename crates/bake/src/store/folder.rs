@@ -126,7 +126,7 @@ impl OutputFolder {
         // its removal, while the other removes its own: no set would be left. Where a folder cannot
         // be locked, as on some network file systems, that stays possible.
         let folder = fs::File::open(&self.path);
-        let _lock = folder.inspect(|folder| drop(folder.lock()));
+        let _lock = folder.and_then(|folder| folder.lock().map(|()| folder));
         let old = OldSet::of(&self.path);
         let _writing = interrupt::writing();
         let new = new.commit().map_err(|(path, why)| StoreError::Io(path, why))?;
