@@ -44,8 +44,10 @@ fn errors_are_as_promised() {
     assert!(small[0].largest < 6.5e-4 && average < 1.8e-4, "{small:?}");
     // Steps of 1/256 are too fine to matter here.
     assert!(small[0].coarse < 1.1 * small[0].largest, "{small:?}");
-    let (heavy, _) = of(Shapes::One(1.6), 3.0, [16, 16], Channels::E);
-    assert!(heavy[0].largest < 7e-3, "{heavy:?}");
+    let (large, _) = of(Shapes::One(2.0), 1.0, [64, 64], Channels::E);
+    assert!(large[0].largest < 1.6e-4, "{large:?}");
+    let (heavy, _) = of(Shapes::One(1.6), 3.0, [64, 64], Channels::E);
+    assert!(heavy[0].largest < 7.3e-4, "{heavy:?}");
     let (split, _) = of(Shapes::One(f64::INFINITY), 3.0, [16, 16], Channels::ScaleBias);
     let quantities: Vec<&str> = split.iter().map(|found| found.quantity).collect();
     assert_eq!(quantities, ["e", "bias", "scale"]);
@@ -57,7 +59,7 @@ fn errors_are_as_promised() {
 #[test]
 fn a_volume_errs_by_what_it_states() {
     let [spec, average] = specs(Shapes::DownTo(1.6), 3.0, &[4, 12, 12], Channels::E);
-    let made = [(spec, 2000), (average, 100)].map(|(spec, count)| {
+    let made = [(spec, 3000), (average, 100)].map(|(spec, count)| {
         let texture = made(&spec);
         let stated = errors(&spec, &texture)[0].largest;
         (spec, texture, stated, count)
