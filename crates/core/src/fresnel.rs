@@ -19,8 +19,8 @@ pub fn refracted_cos<T: Real>(eta: T, cos_theta: T) -> Option<T> {
 /// Reflectance of a dielectric from the cosines on both sides of it; `eta` as for
 /// [`refracted_cos`].
 ///
-/// The same, to rounding, from either side: exchanging the cosines and inverting `eta` changes
-/// signs alone. 0 at η = 1, where equal cosines refract; 0/0 where both cosines are 0.
+/// Both sides reflect the same, to rounding: exchanging the cosines and inverting `eta` changes
+/// only signs. 0 at η = 1, where both cosines are equal; 0/0 where both are 0.
 #[inline(always)]
 pub fn dielectric_of_cosines<T: Real>(eta: T, cos_theta: T, refracted: T) -> T {
     let parallel = (eta * cos_theta - refracted) / (eta * cos_theta + refracted);
@@ -43,8 +43,8 @@ pub fn dielectric<T: Real>(eta: T, cos_theta: T) -> T {
 /// Exact reflectance ∈ [0, 1] of a conductor of index η + ik relative to the outside, η > 0 and
 /// k ≥ 0 (Born & Wolf 1999, §14.4); 1 at grazing.
 ///
-/// The refracted wave's a + ib is formed so that neither part cancels: the smaller part comes from
-/// the product ab = ηk. With k = 0 it is the dielectric's reflectance.
+/// Neither a nor b of the refracted wave's a + ib suffers cancellation: the smaller of them comes
+/// from the product ab = ηk. With k = 0 the result is the dielectric's reflectance.
 #[inline(always)]
 pub fn conductor<T: Real>(eta: T, k: T, cos_theta: T) -> T {
     let (zero, half, one) = (T::constant(0.0), T::constant(0.5), T::constant(1.0));

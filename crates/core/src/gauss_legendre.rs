@@ -1,4 +1,4 @@
-//! Gauss–Legendre rules on [0, 1], computed where they are needed, at compile time too.
+//! Gauss–Legendre rules on [0, 1], computed at run time or at compile time.
 
 use core::f64::consts::PI;
 
@@ -44,8 +44,8 @@ pub const fn fill_gauss_legendre(rule: &mut [(f64, f64)]) {
     }
 }
 
-/// cos x for x ∈ [0, π], to a few roundings, as sin(π/2 − x) by its Taylor series: the library's is
-/// not `const`.
+/// cos x for x ∈ [0, π], to a few roundings, as sin(π/2 − x) by its Taylor series, because the
+/// library's function is not `const`.
 const fn cos(x: f64) -> f64 {
     let y = 0.5 * PI - x;
     let (mut term, mut sum, mut k) = (y, y, 1.0);
@@ -61,7 +61,6 @@ const fn cos(x: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// xⁿ.
     fn power(x: f64, n: usize) -> f64 {
         (0..n).fold(1.0, |product, _| product * x)
     }

@@ -1,10 +1,10 @@
-//! What the analytic model (`microfacet-model`, double precision) and the run-time sampler
-//! (`microfacet-sampler`, single precision) have to agree on.
+//! Definitions that the analytic model (`microfacet-model`, double precision) and the run-time
+//! sampler (`microfacet-sampler`, single precision) share.
 //!
 //! | | |
 //! | --- | --- |
 //! | [`Masking`] | how masking and shadowing combine |
-//! | [`Roughness`], [`Skew`] | what a lobe is made from: roughness, and the matrix of an ellipsoid |
+//! | [`Roughness`], [`Skew`] | the parameters of a lobe: roughness, and the matrix of an ellipsoid |
 //! | [`shape`] | the two ways to write the shape, γ and s = 1/(γ−1) |
 //! | [`fresnel`] | exact reflectance of dielectrics and conductors |
 //! | [`schlick`] | the weights of Schlick's reflectance and of the F82 tint |
@@ -12,19 +12,19 @@
 //! | [`gauss_legendre()`] | quadrature rules, at compile time too |
 //!
 //! The sampler must not depend on the model, whose code a renderer does not need, nor the model on
-//! the sampler, which it judges. So these definitions stand below both. Formulas are generic over
-//! the number, so that both precisions run the same line.
+//! the sampler, which it checks; hence a crate below both. Formulas are generic over the number
+//! type, so that both precisions evaluate the same code.
 //!
 //! ```
 //! use microfacet_core::Masking;
-//! // G2 from the G1 of view and light, and what a sampled light is worth.
+//! // G2 from the G1 of view and light, and the weight of a sampled light.
 //! assert_eq!(Masking::Uncorrelated.g2(0.5, 0.5), 0.25);
 //! assert!((Masking::HeightCorrelated.g2(0.5, 0.5) - 1.0_f32 / 3.0).abs() < 1e-7);
 //! assert_eq!(Masking::Uncorrelated.g2_over_g1(0.5, 0.25), 0.25);
 //! ```
 //!
 //! `no_std` without the feature `std`, without allocation. Features: `std`, hardware square roots,
-//! with the same results as without; `serde`, names of the forms of masking as files write them.
+//! with the same results as without; `serde`, [`Masking`] by its name in files.
 
 #![cfg_attr(not(feature = "std"), no_std)]
 
@@ -110,8 +110,9 @@ impl Real for f64 {
     }
 }
 
-/// Gives an error a `Debug` in the words of its `Display`, because that is what a program shows of
-/// it which returns it from `main` or unwraps it: the value, what is allowed, and the remedy.
+/// Implements `Debug` of an error by its `Display`: a program that returns the error from `main` or
+/// unwraps it shows `Debug`, and the text of `Display` has the value, what is allowed, and the
+/// remedy.
 #[macro_export]
 macro_rules! debug_in_words {
     ($error:ty) => {
@@ -123,7 +124,7 @@ macro_rules! debug_in_words {
     };
 }
 
-/// A density, no more than the largest number. (`min` would take NaN for that, and hide it.)
+/// A density, limited to the largest finite number. NaN stays NaN; `min` would replace it.
 #[inline(always)]
 pub fn saturated<T: Real>(density: T) -> T {
     if density > T::MAX { T::MAX } else { density }

@@ -17,9 +17,8 @@ pub enum Masking {
     /// G2 = G1(v) G1(l): the choice of the Student-t paper (Ribardière et al. 2017, eq. 12,
     /// <https://doi.org/10.1111/cgf.13137>).
     Uncorrelated,
-    /// G2 = 1/(1 + Λ(v) + Λ(l)), height-correlated (Heitz 2014, eq. 99,
-    /// <https://jcgt.org/published/0003/02/03/>): the form of renderers, and of a material that
-    /// states none.
+    /// G2 = 1/(1 + Λ(v) + Λ(l)) (Heitz 2014, eq. 99, <https://jcgt.org/published/0003/02/03/>):
+    /// what renderers use, and the default of a material that states none.
     #[default]
     HeightCorrelated,
 }

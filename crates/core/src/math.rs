@@ -4,7 +4,7 @@
 
 use crate::Real;
 
-/// Square root.
+/// √x in single precision.
 #[inline(always)]
 pub fn sqrt(x: f32) -> f32 {
     Real::sqrt(x)
@@ -16,7 +16,7 @@ pub fn sqrt64(x: f64) -> f64 {
     Real::sqrt(x)
 }
 
-/// x clamped to [0, 1], and 0 for NaN: random numbers and cosines as every lookup takes them.
+/// x clamped to [0, 1], and 0 for NaN. Every lookup takes random numbers and cosines in this way.
 #[inline(always)]
 pub fn unit(x: f32) -> f32 {
     if x > 0.0 { x.min(1.0) } else { 0.0 }

@@ -1,8 +1,8 @@
 //! The two ways to write the shape: γ ∈ (3/2, ∞], as the Student-t paper does (Ribardière et al.
-//! 2017, <https://doi.org/10.1111/cgf.13137>), and s = 1/(γ−1) ∈ [0, 2), in which nothing is
-//! infinite (Beckmann is s = 0, GGX s = 1) and everything tabulated is smooth.
+//! 2017, <https://doi.org/10.1111/cgf.13137>), and s = 1/(γ−1) ∈ [0, 2), which is always finite
+//! (Beckmann is s = 0, GGX s = 1) and in which tabulated quantities are smooth.
 
-/// The end of s: as γ → 3/2 the projected area diverges.
+/// The end of s, which is excluded: as γ → 3/2 the projected area diverges.
 pub const S_END: f64 = 2.0;
 
 /// The shape s = 1/(γ−1) of γ; 0 for γ = ∞.

@@ -1,4 +1,4 @@
-//! The matrix through which an ellipsoid's lobe is seen.
+//! The matrix of the lobe of an ellipsoid.
 
 use core::fmt;
 
@@ -8,12 +8,13 @@ use crate::Roughness;
 /// its inverse. The mean slope of a lobe is at most the reciprocal.
 const SINGULAR: f64 = 1e-8;
 
-/// The matrix U of an ellipsoid, in the lower-triangular form ((p, 0, 0), (q, r, 0), (x, y, 1)).
+/// The matrix U of an ellipsoid, lower triangular: ((p, 0, 0), (q, r, 0), (x, y, 1)).
 ///
-/// U maps directions by v ↦ Uv and normals by m ↦ U⁻ᵀm into a space where the lobe is an isotropic
-/// Student-t of roughness 1 about Un. The lobe is blind to a rotation on the left of U and to a
-/// positive factor, so every regular U has this form, with p, r > 0. The slopes of the surface are
-/// those of the Student-t times the 2×2 matrix of p, q and r, minus (x, y).
+/// U maps directions by v ↦ Uv and normals by m ↦ U⁻ᵀm into unit space, where the lobe is an
+/// isotropic Student-t of roughness 1 about Un. A rotation on the left of U and a positive factor
+/// leave the lobe unchanged, so every regular U can be made lower triangular, with p, r > 0. The
+/// slopes of the surface are those of the Student-t times the 2×2 matrix of p, q and r, minus (x,
+/// y).
 ///
 /// For γ = 2, U is the matrix A of the Ellipsoid NDF (Walter, Dong, Marschner, Greenberg 2015, *The
 /// Ellipsoid Normal Distribution Function*, supplemental material of
@@ -35,11 +36,12 @@ pub struct Skew {
 /// Why a matrix makes no ellipsoid.
 #[derive(Clone, Copy, PartialEq)]
 pub enum SkewError {
-    /// `!(sigma > 0)` or infinite.
+    /// σ does not lie in (0, ∞); the value.
     Sigma(f64),
     /// An angle or a matrix entry is infinite or NaN; the value.
     NotFinite(f64),
-    /// The columns are linearly dependent; the ratio of the smallest to the largest part found.
+    /// The columns are linearly dependent; the length of what is independent in a column, relative
+    /// to the column, or of the last column relative to the largest entry.
     Singular(f64),
     /// The macro normal lies almost in the silhouette: the mean normal is tilted by more than
     /// atan(1e8) from it; the tangent of the tilt.
@@ -85,7 +87,7 @@ fn length(a: Vector) -> f64 {
     libm::sqrt(dot(a, a))
 }
 
-/// Unit vector and length; the zero vector has no direction.
+/// Unit vector and length; both are zero for the zero vector.
 fn direction(a: Vector) -> (Vector, f64) {
     let length = length(a);
     (if length > 0.0 { a.map(|x| x / length) } else { [0.0; 3] }, length)
@@ -97,14 +99,14 @@ fn less(a: Vector, f: f64, b: Vector) -> Vector {
 }
 
 impl Skew {
-    /// From the roughness along two axes of the ellipsoid (the third has 1) and its turn:
-    /// U = diag(σx, σy, 1)·Rx·Ry·Rz. A direction is turned by θz about z first, then by θy about y,
-    /// then by θx about x (right-handed, radians).
+    /// U = diag(σx, σy, 1)·Rx·Ry·Rz, from the roughness along two axes of the ellipsoid and its
+    /// rotation: a direction is turned by θz about z first, then by θy about y, then by θx about x
+    /// (right-handed, radians).
     ///
     /// θz is the direction of anisotropy; θx and θy tilt the lobe away from n.
     ///
     /// # Errors
-    /// [`SkewError`], see there.
+    /// [`SkewError`].
     pub fn new(sigma: impl Into<Roughness>, theta: [f64; 3]) -> Result<Self, SkewError> {
         let sigma = sigma.into().positive().map_err(SkewError::Sigma)?;
         if let Some(angle) = theta.into_iter().find(|x| !x.is_finite()) {
@@ -121,14 +123,14 @@ impl Skew {
         Self::from_matrix([0, 1, 2].map(|i| rows[i].map(|x| scale[i] * x)))
     }
 
-    /// Uv: the direction `v` in unit space, not normalised. Its third component is
-    /// negative where `v` is below the lobe's own horizon.
+    /// Uv: the direction `v` in unit space, not normalised. Its third component is negative where
+    /// `v` is below the lobe's own horizon.
     pub fn direction(&self, v: [f64; 3]) -> [f64; 3] {
         let Self { p, q, r, x, y } = *self;
         [p * v[0], q * v[0] + r * v[1], x * v[0] + y * v[1] + v[2]]
     }
 
-    /// From U, rows first.
+    /// From the rows of U.
     ///
     /// # Errors
     /// [`SkewError`] if an entry is not finite, U is singular, or n is almost in the silhouette.
@@ -141,8 +143,8 @@ impl Skew {
         if largest == 0.0 {
             return Err(SkewError::Singular(0.0));
         }
-        // Gram–Schmidt from the last column: U = QL with a rotation or reflection Q, to which the
-        // lobe is blind. The largest entry is divided out, so that no square overflows.
+        // Gram–Schmidt from the last column: U = QL with a rotation or reflection Q, which does not
+        // change the lobe. The largest entry is divided out, so that no square overflows.
         let [c1, c2, c3] = [0, 1, 2].map(|j| [0, 1, 2].map(|i| u[i][j] / largest));
         let (q3, l33) = direction(c3);
         let l32 = dot(q3, c2);
