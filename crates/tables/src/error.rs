@@ -1,4 +1,4 @@
-//! Why bytes are no table set, and numbers as messages show them.
+//! The error of reading a table set, and numbers in messages.
 
 use alloc::string::String;
 use core::fmt;
@@ -9,7 +9,7 @@ pub enum LoadError {
     /// The bytes contradict the format: truncated, damaged, or describing something impossible.
     Invalid(String),
     /// A file that may be valid but that this version cannot read: another version of the format,
-    /// or nodes at places that no reader here expects.
+    /// or nodes that are not spaced as its readers need.
     Unsupported(String),
 }
 
@@ -26,8 +26,8 @@ microfacet_core::debug_in_words!(LoadError);
 
 impl core::error::Error for LoadError {}
 
-/// An interval in a message: its ends to nine digits, which hides the rounding of 1/(1/x), and by
-/// powers of ten where they are long.
+/// An interval in a message: its ends to nine digits, which hides the rounding of 1/(1/x), and with
+/// a power of ten below 1e-4 and from 1e6.
 pub struct Range(pub [f64; 2]);
 
 impl fmt::Display for Range {
@@ -37,7 +37,6 @@ impl fmt::Display for Range {
     }
 }
 
-/// A number in a message, as in [`Range`].
 struct Short(f64);
 
 impl fmt::Display for Short {

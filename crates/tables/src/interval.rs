@@ -1,4 +1,4 @@
-//! Closed intervals: a parameter that is one number, or a texture's range of numbers.
+//! Closed intervals: a parameter that is one number, or the range of numbers of a texture.
 
 /// A closed interval `[min, max]`; a single number is the interval with both ends equal.
 ///
@@ -59,8 +59,8 @@ impl Interval {
 
     /// The smallest interval that holds both.
     ///
-    /// NaN is kept: where an operation overflows that gives it, it is refused later on, while
-    /// `f64::min` and `max` would leave the other end as if it were the value.
+    /// An end that is NaN makes both ends NaN, so that a later check refuses the overflow that
+    /// caused it; `f64::min` and `max` would drop the NaN.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
         let ends = [self.min, self.max, other.min, other.max];

@@ -1,19 +1,19 @@
-//! What a table of a microfacet material is: its coordinates, its values with the errors measured
-//! when it was baked, the lookup along its axes, and the file of a set.
+//! Tables of microfacet materials: their coordinates, their values with the errors measured at
+//! baking, interpolation along their axes, and the file of a set of tables.
 //!
 //! | | |
 //! | --- | --- |
-//! | [`Table`] | values over [`Axis`]es, what they are of ([`Kind`], [`Subject`]) and how far they err |
-//! | [`axis`] | one file a coordinate: its formula, its inverse, its nodes, and its fast form in f32 |
+//! | [`Table`] | values over [`Axis`]es, with their quantity ([`Kind`], [`Subject`]) and errors |
+//! | [`axis`] | one file for each coordinate: formula, inverse, nodes, and fast evaluation in f32 |
 //! | [`encode`], [`decode`] | a set to and from the bytes of a safetensors file; `docs/format.md` specifies it |
 //! | [`describe`], [`reassemble`] | the description of one table, for another container |
-//! | [`Provenance`], [`MaterialEntry`] | where a set comes from, and its materials |
+//! | [`Provenance`], [`MaterialEntry`] | the origin of a set, and its materials |
 //! | [`LobeSpec`] | a lobe, as recipes, plans and files state it |
 //! | [`Index`] | which of the numbered sets of a library holds a material |
 //!
-//! `microfacet-baker`, which bakes sets, and `microfacet-sampler`, which looks them up, share it: a
-//! coordinate is one formula for both. A renderer needs this crate only to write sets, or to
-//! read one table by itself:
+//! `microfacet-baker`, which bakes sets, and `microfacet-sampler`, which looks them up, share this
+//! crate, so that both use the same formula for a coordinate. A renderer needs it only to write
+//! sets, or to read one table by itself:
 //!
 //! ```
 //! # fn main() -> Result<(), microfacet_tables::LoadError> {
@@ -51,8 +51,8 @@ pub use format::{
 };
 pub use interval::Interval;
 
-/// The smallest γ of tables; below, almost every visible normal has a slope beyond any
-/// floating-point number. The mathematics begins at 3/2.
+/// The smallest γ of tables. The distribution exists for γ > 3/2, but below this γ almost every
+/// visible normal has a slope too large for a floating-point number.
 pub const GAMMA_MIN: f64 = 1.501;
 
 /// The largest σ of albedo tables of the family.

@@ -16,9 +16,9 @@ use super::lagrange::{SIX, six_weights};
 /// 1/n, …, (n−1)/n. Where `fold`, with |sin| and |cos|, t = 2p/π, and the nodes are 0, 1/(n−1),
 /// …, 1. A single node stands for every azimuth.
 ///
-/// p lies half-way between φ, on which a narrow lobe varies within its aspect, and the azimuth in
-/// unit space, on which everything else varies. σ_φ² = σ₁² cos²(φ − turn) + σ₂² sin²(φ − turn) is
-/// the square of the roughness seen from φ; σ_φ takes the place of σ in
+/// p lies half-way between φ and the azimuth in unit space: a narrow lobe varies with φ within an
+/// angle of its aspect ratio, and everything else varies with the azimuth in unit space. σ_φ, with
+/// σ_φ² = σ₁² cos²(φ − turn) + σ₂² sin²(φ − turn), is the roughness along φ, and replaces σ in
 /// [`ViewBlend`](super::ViewBlend).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -82,13 +82,13 @@ impl PreparedAzimuth {
         [ct * c + st * s, ct * s - st * c]
     }
 
-    /// These components times √σ₁ and √σ₂: the direction whose angle is p.
+    /// The principal components times √σ₁ and √σ₂, whose angle is p.
     fn stretched(&self, c: f64, s: f64) -> [f64; 2] {
         let [x, y] = self.principal(c, s);
         [sqrt64(self.sigma[0]) * x, sqrt64(self.sigma[1]) * y]
     }
 
-    /// σ_φ of the direction (cos φ, sin φ): the roughness seen from there.
+    /// σ_φ of the direction (cos φ, sin φ).
     pub fn sigma(&self, c: f64, s: f64) -> f64 {
         let [x, y] = self.principal(c, s);
         libm::hypot(self.sigma[0] * x, self.sigma[1] * y)
@@ -165,11 +165,11 @@ impl PreparedAzimuth {
     }
 
     /// Directions spread over the coordinate, each with its share of the circle; the shares add up
-    /// to one. Between nodes it is a Gauss–Legendre rule, since what is interpolated has kinks at
-    /// them.
+    /// to one. Each cell has a Gauss–Legendre rule, because interpolated values have kinks at the
+    /// nodes.
     pub fn circle(&self) -> impl Iterator<Item = ([f64; 2], f64)> {
         const RULE: [(f64, f64); 4] = gauss_legendre();
-        // A limit for tables of any size.
+        // Limits the number of directions for tables of any size.
         let cells = if self.fold { self.nodes - 1 } else { self.nodes }.clamp(1, 64);
         let points = RULE.len() * if self.nodes == 1 { 0 } else { cells };
         let at = move |i: usize| {

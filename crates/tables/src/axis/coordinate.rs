@@ -1,4 +1,5 @@
-//! What checking a file and placing the nodes of a new table need to know of a coordinate.
+//! The properties of a coordinate by which files are checked and the nodes of new tables are
+//! spaced.
 
 use alloc::vec::Vec;
 
@@ -17,7 +18,6 @@ pub(crate) trait Coordinate {
         [0.0, 1.0]
     }
 
-    /// Where the nodes stand.
     fn placement(&self) -> Placement {
         Placement::Even
     }
@@ -33,7 +33,7 @@ pub(crate) trait Coordinate {
     }
 }
 
-/// Where the nodes of an axis stand.
+/// The spacing of the nodes of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Placement {
     /// Anywhere in the coordinate's range.
@@ -45,7 +45,7 @@ pub(crate) enum Placement {
 }
 
 impl Placement {
-    /// The place of the i-th of n nodes; `None` if nodes may stand anywhere.
+    /// The coordinate of the i-th of n nodes; `None` for [`Free`](Self::Free).
     pub(crate) fn node(self, i: usize, n: usize) -> Option<f64> {
         match self {
             Self::Free => None,

@@ -1,6 +1,6 @@
-//! The view axis of albedos seen from inside a dielectric: parts that meet where total reflection
-//! sets in and, for heavy tails, where upright facets begin to transmit, so that no polynomial
-//! crosses these kinks, wherever the index of refraction puts them.
+//! The view axis of albedos seen from inside a dielectric. Its parts meet where total reflection
+//! begins and, for heavy tails, where upright facets begin to transmit, so that no polynomial
+//! crosses the kinks there, for any index of refraction.
 
 use serde::{Deserialize, Serialize};
 
@@ -53,7 +53,7 @@ fn is_zero(x: &f64) -> bool {
 
 impl CriticalBlend {
     /// The parameters of baked tables over indices, found by measuring: tables in three parts need
-    /// many nodes of η near √2, where those parts change places.
+    /// many nodes of η near √2, where μ_c and μ_u change their order.
     pub const BAKED: Self = Self {
         share: 0.4,
         scale: 3.0,
@@ -66,8 +66,10 @@ impl CriticalBlend {
         between: 0.0,
     };
 
-    /// The parameters of baked tables of one index and a heavy tail. Of those beside them
-    /// (`cargo run --profile dist -p microfacet-study -- dielectric_views`) none errs less.
+    /// The parameters of baked tables of one index and a heavy tail. Of those that
+    /// `cargo run --profile dist -p microfacet-study -- dielectric_views` compares, none has
+    /// smaller
+    /// errors.
     pub const UPRIGHT: Self = Self { kink: 0.0, sharp: 0.1, between: 0.9, ..Self::BAKED };
 
     /// The number of parts: two or three.
@@ -79,7 +81,7 @@ impl CriticalBlend {
     pub fn prepare(&self, sigma: f64, gamma: f64, inverse_eta: f64) -> PreparedCritical {
         let critical = sqrt64((1.0 - inverse_eta) * (1.0 + inverse_eta));
         let floor = harmonic(harmonic(self.floor, self.slope * sigma), critical);
-        // For η = ∞ no view is below 1/η.
+        // For η = ∞, 1/η is less than the cosine of the first view.
         let upright = inverse_eta.max(floor);
         let width = sqrt64(self.kink * sigma + self.sharp * self.sharp);
         let Self { share, root, between, .. } = *self;
@@ -220,7 +222,7 @@ impl Coordinate for CriticalBlend {
 
     fn fault(&self) -> Option<&'static str> {
         let Self { share, scale, heavy, floor, slope, root, kink, sharp, between } = *self;
-        // A coordinate that is no wider than rounding has no nodes.
+        // δ is 0 without `kink` and `sharp`, and S undefined.
         let width = if sharp > 0.0 { sharp } else { kink };
         let sound = positive(&[scale, floor, slope, width])
             && (0.0..=1.0).contains(&share)

@@ -22,8 +22,8 @@ pub(super) fn rate(t: f64) -> f64 {
     2.0 * (1.0 - t)
 }
 
-/// [`coordinate`] in single precision from the rest alone, to the rounding of 1, as any position
-/// along an axis.
+/// [`coordinate`] in single precision from the rest alone. The absolute error is the rounding of 1,
+/// as for every coordinate.
 #[inline(always)]
 pub(super) fn fast(rest: f32) -> f32 {
     1.0 - sqrt(rest)

@@ -1,12 +1,11 @@
 //! The half tangent h = x/(1 + √(1+x²)) of a slope or cotangent x: tan(α/2) of the angle α with tan
 //! α = x.
 //!
-//! It is the coordinate of views, for z = cot θ/σ ≥ 0, and what tables of slopes hold, for x of
-//! either sign: there as the distance g from an end of [−1, 1], 1 + h for the half u ≤ ½ of the
-//! random numbers and 1 − h for the other, so that both tails keep their digits. The slope follows
-//! from g without a division or a root, as the quotient ±2(1−g) : g(2−g), and the silhouette x =
-//! −cot θ is g = 1 − τ, linear in the coordinate τ of the view. Slopes are written x : z where z
-//! may be 0.
+//! It is the coordinate of views, for z = cot θ/σ ≥ 0. Tables of slopes hold it for x of either
+//! sign, as the distance g from an end of [−1, 1], 1 + h for the half u ≤ ½ of the random numbers
+//! and 1 − h for the other, so that both tails keep their digits. The slope follows from g without
+//! a division or a root, as the quotient ±2(1−g) : g(2−g), and the silhouette x = −cot θ is
+//! g = 1 − τ, linear in the coordinate τ of the view. Slopes are written x : z where z may be 0.
 
 use serde::{Deserialize, Serialize};
 use wide::f32x4;
@@ -23,8 +22,8 @@ use super::coordinate::Coordinate;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HalfTangent {
-    /// Where the nodes become denser: t is linear in τ between (0, 0), these [τ, t] and (1, 1), and
-    /// convex, so that it is also the largest of the three linear functions.
+    /// Points [τ, t] where the nodes become denser: t is linear in τ between (0, 0), the two knots
+    /// and (1, 1), and convex, so that it is the largest of the three linear functions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub knots: Option<[[f64; 2]; 2]>,
 }
@@ -59,7 +58,7 @@ impl HalfTangent {
     pub fn parts(&self, t: f64) -> [f64; 2] {
         let [[from, low], [to, high]] = self.piece(t, 1);
         let slope = (to - from) / (high - low);
-        // 1 − τ from the end, where that is 1, without cancellation.
+        // 1 − τ from the upper end of the piece: without cancellation if that end is 1.
         [from + (t - low) * slope, (1.0 - to) + (high - t) * slope]
     }
 
@@ -112,8 +111,9 @@ pub struct Lines {
 }
 
 impl Lines {
-    /// The coordinate of four views, and r; `length` is √(ρ² + z²). Only `PRECISE`, r keeps its
-    /// digits next to normal incidence, where cells of a peeled table are as narrow as 7e-4 of τ.
+    /// The coordinate of four views, and r; `length` is √(ρ² + z²). Only with `PRECISE` does r keep
+    /// its digits next to normal incidence, where cells of a peeled table are as narrow as 7e-4 of
+    /// τ.
     #[inline(always)]
     pub fn of_views<const PRECISE: bool>(&self, rho: f32x4, z: f32x4, length: f32x4) -> [f32x4; 2] {
         let rest = if PRECISE {
@@ -140,7 +140,7 @@ impl Coordinate for HalfTangent {
             let [[from, low], [to, high]] = [points[i], points[i + 1]];
             if low < high && from < to { (high - low) / (to - from) } else { f64::NAN }
         });
-        // Not true of what is no number.
+        // False if a slope is NaN.
         let convex = slopes[0] <= slopes[1] && slopes[1] <= slopes[2] && slopes[2] < 1e6;
         (self.knots.is_some() && !convex).then_some("knots that are not convex")
     }
@@ -207,7 +207,7 @@ impl Slope {
     }
 }
 
-/// [`slope_at`] with −x/2 in the place of x: (g − 1) : g(2 − g), one operation less.
+/// [`slope_at`] with −x/2 instead of x: (g − 1) : g(2 − g), one operation less.
 #[inline(always)]
 pub fn half_slope_at(g: f32x4) -> [f32x4; 2] {
     [g - 1.0, g * (2.0 - g)]

@@ -1,8 +1,8 @@
 //! Cubic Hermite cells on even nodes, the one interpolation of the fast lookups.
 //!
-//! The same cubic has several forms here: over nodes ([`hermite`], and in SIMD lanes [`basis`] and
-//! [`hermite_lanes`]), and over the coefficients that a lobe prepares ([`horner`] with the fewest
-//! operations, [`cubic`] with the shortest chain of them). A test holds them together.
+//! The same cubic is evaluated from nodes ([`hermite`], and in SIMD lanes [`basis`] and
+//! [`hermite_lanes`]), and from the coefficients that a lobe prepares ([`horner`] with the fewest
+//! operations, [`cubic`] with the shortest chain of them). A test compares all of them.
 
 use alloc::vec::Vec;
 
@@ -13,9 +13,8 @@ use microfacet_core::math::sqrt64;
 /// (value, slope) at a node, the slope per node index.
 pub type Node = [f32; 2];
 
-/// Splits a coordinate in [0, cells] into a cell and the position inside it.
-///
-/// The position is 1 at the last node, so that both ends are reached. NaN gives cell 0.
+/// Splits a coordinate in [0, cells] into a cell and the position inside it, which is 1 at the last
+/// node. NaN gives cell 0.
 #[inline(always)]
 pub fn locate(x: f32, cells: usize) -> (usize, f32) {
     // The cast saturates and takes NaN to 0; the cell is at most cells − 1 whatever x is.
@@ -69,7 +68,7 @@ pub fn horner(c: &Cell, w: f32) -> f32 {
     c[0] + w * (c[1] + w * (c[2] + w * c[3]))
 }
 
-/// The cubic of a cell at position w, in two halves that do not wait for each other.
+/// The cubic of a cell at position w, in two halves that do not depend on each other.
 #[inline(always)]
 pub fn cubic(c: &Cell, w: f32) -> f32 {
     (c[0] + w * c[1]) + (w * w) * (c[2] + w * c[3])
@@ -87,8 +86,7 @@ pub fn horner_lanes([c0, c1, c2, c3]: [f32x4; 4], w: f32x4) -> f32x4 {
     c0 + w * (c1 + w * (c2 + w * c3))
 }
 
-/// Splits coordinates in [0, cells] into cells, the guard cell included, and the positions inside
-/// them.
+/// Splits coordinates in [0, cells] into cells, the guard cell included, and positions inside them.
 ///
 /// The cast saturates only where the hardware's does; NaN gives a cell outside the table, or a NaN
 /// position.
@@ -147,18 +145,19 @@ impl Cubic {
         if (last - w).abs() <= 1e-6 * last && last <= 1.0 { last } else { self.bisect(y) }
     }
 
-    /// The same where the cubic is far from its chord, by Newton's steps within a bracket.
+    /// `solve` where the cubic is far from its chord, by Newton's steps within a bracket.
     #[cold]
     fn bisect(&self, y: f64) -> f64 {
         let (mut lo, mut hi) = (0.0, 1.0);
-        // The parabola at w = 0, where the tails of distributions start almost level.
+        // Starts at the root of the parabola about w = 0: in the tails of distributions cells start
+        // almost level.
         let (rise, slope) = (y - self.c[0], self.c[1]);
         let start = 2.0 * rise / (slope + sqrt64(slope * slope + 4.0 * self.c[2] * rise));
         let mut w = if (0.0..1.0).contains(&start) { start } else { 0.5 };
         for _ in 0..60 {
             let error = self.value(w) - y;
             let newton = w - error / self.derivative(w);
-            // Before the bracket is tested: at convergence steps may end beyond it.
+            // Tested before the bracket, beyond which a converged step may end.
             if (newton - w).abs() <= 1e-8 * w {
                 return newton.clamp(0.0, 1.0);
             }
@@ -184,9 +183,8 @@ pub fn make_monotone(run: &mut [Node]) {
 }
 
 /// Limits slopes so that the cubic of every cell ascends with its nodes: each slope lies in [0, 3Δ]
-/// for both neighbouring rises Δ (Fritsch & Carlson 1980,
-/// <https://doi.org/10.1137/0717021>). The condition is linear, so it also
-/// holds between rows.
+/// for both neighbouring rises Δ (Fritsch & Carlson 1980, <https://doi.org/10.1137/0717021>). The
+/// condition is linear, so it also holds between rows.
 pub fn limit_slopes(nodes: &mut [[f32; 2]]) {
     for i in 0..nodes.len() {
         let mut limit = f32::INFINITY;

@@ -1,5 +1,4 @@
-//! Lagrange polynomials through a few nodes: the interpolation along every axis without fast
-//! lookups.
+//! Lagrange polynomials through a few nodes, for axes that have no Hermite cells.
 
 use alloc::vec::Vec;
 
@@ -98,7 +97,7 @@ mod tests {
                 let power = window as i32 - 1;
                 let all = weights(&nodes, t, window);
                 let sum: f64 = all.iter().map(|&(i, w)| w * nodes[i].powi(power)).sum();
-                // A single node stands for itself.
+                // With a window of one node the value is that of the node, x⁰.
                 assert!((sum - t.powi(power)).abs() < 1e-13, "{window}, {t}: {sum}");
                 assert_eq!((all.len(), all[window - 1].0 - all[0].0), (window, window - 1));
             }

@@ -7,12 +7,12 @@ use super::coordinate::{Coordinate, Placement, bisect, positive};
 /// The coordinate of a roughness, t = ln(1 + σ/offset) + slow·ln(σ/first) + linear·σ, ascending in
 /// σ.
 ///
-/// Steps are even ratios about the offset, wide ratios far below it, where only a heavy tail still
-/// makes a difference, and finer where σ is large.
+/// Steps are even ratios of σ near the offset, wide ratios far below it, where only the tail of a
+/// small γ matters, and finer where σ is large.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LogRoughness {
-    /// The σ about which the first term turns from even steps to even ratios.
+    /// The σ near which the first term changes from even steps to even ratios.
     pub offset: f64,
     /// Where t vanishes (but for first/offset); a surface of smaller σ is a mirror.
     pub first: f64,

@@ -1,13 +1,12 @@
-//! Axes of tables: the quantity along an axis, the places of its nodes, and interpolation between
-//! them.
+//! Axes of tables: the quantity along an axis, its nodes, and interpolation between them.
 //!
-//! Each coordinate has a file with its formula, its inverse, the places of its nodes, the checks of
-//! its parameters, and the fast forms that lookups use, which tests hold to the formula:
-//! [`InverseShape`] and [`LogShape`] of γ, [`LogRoughness`] of σ, [`ReflectanceRoot`] of η,
-//! [`HalfTangent`], [`Rational`], [`ViewBlend`] and [`CriticalBlend`] of the elevation of a view,
-//! [`Azimuth`] of its azimuth, [`MirroredRoot`] and [`OddRoot`] of a random number. Baking,
-//! lookups, measurement and export all call these. There are two interpolations: [`lagrange`], and
-//! Hermite cells.
+//! Each coordinate has a file with its formula, its inverse, the spacing of its nodes, the checks
+//! of its parameters, and the fast evaluations that lookups use, which tests compare with the
+//! formula: [`InverseShape`] and [`LogShape`] of γ, [`LogRoughness`] of σ, [`ReflectanceRoot`] of
+//! η, [`HalfTangent`], [`Rational`], [`ViewBlend`] and [`CriticalBlend`] of the elevation of a
+//! view, [`Azimuth`] of its azimuth, [`MirroredRoot`] and [`OddRoot`] of a random number. Baking,
+//! lookups, measurement and export all call them. Interpolation is by Lagrange polynomials
+//! ([`lagrange`]) or by Hermite cells.
 
 use alloc::format;
 use alloc::string::String;
@@ -80,7 +79,7 @@ pub enum Mapping {
 }
 
 impl Mapping {
-    /// One mapping of every kind, with the parameters of baked tables or possible ones.
+    /// One mapping of every kind, with the parameters of baked tables or other valid ones.
     pub const EVERY: [Self; 11] = [
         Self::InverseShape,
         Self::LogShape(LogShape::BAKED),
@@ -122,7 +121,7 @@ impl Mapping {
         self.get().values(n)
     }
 
-    /// The place of the i-th of n nodes; `None` if the mapping lets nodes stand anywhere.
+    /// The coordinate of the i-th of n nodes; `None` if the mapping prescribes none.
     pub(crate) fn placed(&self, i: usize, n: usize) -> Option<f64> {
         self.get().placement().node(i, n)
     }
@@ -202,10 +201,10 @@ impl Axis {
         Self { name: name.into(), mapping, interpolation, nodes }
     }
 
-    /// An axis of `count` nodes at the places that its mapping prescribes.
+    /// An axis of the `count` nodes that its mapping prescribes.
     ///
     /// # Panics
-    /// If the mapping lets nodes stand anywhere.
+    /// If the mapping prescribes no nodes.
     pub fn placed(
         name: &str,
         mapping: Mapping,
@@ -273,7 +272,7 @@ impl Axis {
     /// A t within rounding of a node is taken as that node.
     pub fn weights(&self, t: f64) -> Option<Weights> {
         let [first, last] = self.ends();
-        // On some axes t has come through logarithms and their inverses.
+        // t may have been rounded by a logarithm and its inverse, which albedo tables use.
         let same = match self.interpolation {
             Interpolation::Lagrange6 => 1e-9 * (1.0 + last.abs()),
             _ => 1e-12 * (1.0 + t.abs()),
@@ -286,7 +285,8 @@ impl Axis {
     }
 
     /// Checks what every reader relies on: finite, strictly ascending nodes within the mapping's
-    /// range, at the places that it prescribes, and evenly spaced where a polynomial needs that.
+    /// range, equal to those that it prescribes if any, and evenly spaced for
+    /// [`Interpolation::Lagrange6`].
     pub fn validate(&self) -> Result<(), LoadError> {
         let fail = |why: &str| Err(LoadError::Invalid(format!("axis `{}`: {why}", self.name)));
         let unsupported =
@@ -359,7 +359,6 @@ mod tests {
             }
         }
         assert_eq!(LogShape::BAKED.coordinate(INF), 0.0);
-        // As the formula has it.
         let t = libm::acos(1.0 - 2.0 * libm::sqrt(0.2)) / core::f64::consts::PI;
         assert!((ReflectanceRoot.coordinate(1.5) - t).abs() < 1e-15);
     }

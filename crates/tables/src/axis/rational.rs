@@ -25,8 +25,8 @@ pub struct Rational {
 }
 
 impl Rational {
-    /// The parameters of baked G1 tables: κ is within 10 % of the mean positive slope c√s/(2−s),
-    /// the projected area at grazing.
+    /// The parameters of baked G1 tables: κ is within 10 % of the projected area at grazing, the
+    /// mean positive slope c√s/(2−s).
     pub const BAKED: Self = Self { scale: 0.5, crowded: false };
 
     /// κ for the shape s.

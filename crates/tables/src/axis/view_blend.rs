@@ -1,5 +1,5 @@
-//! The view axis of albedo tables. **To space it differently, change this file alone** and bake
-//! again: baking, readers, certificates, examples and the description in every file follow.
+//! The view axis of albedo tables. Its spacing is defined in this file alone; baking, readers,
+//! certificates, examples and the description in every file follow it.
 //!
 //! `cargo run --release -p microfacet-study -- albedo_design` measures the reasons for this
 //! spacing.
@@ -14,8 +14,9 @@ use super::lagrange::SIX;
 /// The view coordinate of albedo tables, t ∈ [0, 1] of μ = cos θ_v ∈ [μ₀, 1], as
 /// [`Mapping::formula`](super::Mapping::formula) states it.
 ///
-/// h follows the view; x follows z = cot θ_v/σ and, as γ → 3/2, the ever wider reach of masking; ν
-/// resolves the change at normal incidence, and the fourth roots resolve grazing views.
+/// h is a function of the view alone. x is a function of z = cot θ_v/σ and κ, which follows the
+/// range of masking as that grows for γ → 3/2. The term with ν resolves the change at normal
+/// incidence, and the fourth roots resolve grazing views.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ViewBlend {
@@ -51,12 +52,12 @@ impl ViewBlend {
         slope: 2e-3,
     };
 
-    /// The parameters for tables of many nodes. The largest error left there is at the cusp at
-    /// normal incidence, for γ from 1.5 to 1.6, which needs closer nodes.
+    /// The parameters for tables of many nodes, whose largest error is at the cusp at normal
+    /// incidence, for γ from 1.5 to 1.6: it needs closer nodes.
     pub const CLOSE: Self = Self { normal: 0.2, scale: 6.0, spread: 1.3, ..Self::BAKED };
 
-    /// The same coordinate for one shape γ: κ is a constant, and readers need no γ, see
-    /// [`prepare_shaped`](Self::prepare_shaped).
+    /// The same coordinate for one shape γ: κ is a constant, so readers need no γ
+    /// ([`prepare_shaped`](Self::prepare_shaped)).
     #[must_use]
     pub fn of_shape(&self, gamma: f64) -> Self {
         Self { scale: kappa(self.scale, self.heavy, gamma), heavy: 0.0, ..*self }
@@ -64,14 +65,14 @@ impl ViewBlend {
 
     /// Prepares the coordinate of a table of one shape for a roughness σ > 0.
     pub fn prepare_shaped(&self, sigma: f64) -> PreparedView {
-        // With `heavy` = 0, γ does not matter.
+        // `heavy` is 0, so γ does not matter.
         self.prepare(sigma, f64::INFINITY)
     }
 
     /// Prepares the coordinate for a roughness σ > 0 and a shape γ.
     pub fn prepare(&self, sigma: f64, gamma: f64) -> PreparedView {
         let knee = kappa(self.scale, self.heavy, gamma) * sigma;
-        // A minimum would have a kink, which would show in the nodes along σ.
+        // A minimum would have a kink as a function of σ, along which tables are interpolated.
         let floor = harmonic(self.floor, self.slope * sigma);
         let mut view =
             PreparedView { blend: *self, knee, turn: self.spread * sigma, floor, start: 0.0 };

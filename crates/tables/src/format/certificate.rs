@@ -1,4 +1,4 @@
-//! What a bake measured of a table: how far its quantities err between the nodes, and where most.
+//! The errors that a bake measured on a table between its nodes.
 
 use alloc::borrow::ToOwned;
 use alloc::collections::BTreeMap;
@@ -26,13 +26,13 @@ pub enum Quantity {
     F82,
     /// The directional albedo of one conductor, red.
     Red,
-    /// The same, green.
+    /// The directional albedo of one conductor, green.
     Green,
-    /// The same, blue.
+    /// The directional albedo of one conductor, blue.
     Blue,
     /// The share of light that a dielectric reflects.
     Reflection,
-    /// The share of light that it transmits.
+    /// The share of light that a dielectric transmits.
     Transmission,
 }
 
@@ -77,7 +77,7 @@ impl Quantity {
     }
 }
 
-/// A coordinate of a place in a table.
+/// A coordinate of the point at which an error was measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Coordinate {
     /// s = 1/(γ−1).
@@ -116,11 +116,11 @@ impl Coordinate {
 /// Absolute errors of one quantity of a table.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Errors {
-    /// The largest, over the part of the domain that a bake promises; rounded up.
+    /// The largest within the domain for which a bake states errors; rounded up.
     pub largest: f64,
-    /// The root mean square over the same part.
+    /// The root mean square within that domain.
     pub rms: Option<f64>,
-    /// The largest beyond that part, where the table reaches further.
+    /// The largest outside that domain, where the table reaches further.
     pub outside: Option<f64>,
 }
 
@@ -131,13 +131,13 @@ pub struct Errors {
 pub struct Certificate {
     /// The errors of each quantity.
     pub errors: BTreeMap<Quantity, Errors>,
-    /// Where the largest of them all is. An infinite coordinate is left out.
+    /// The point of the largest error of all. An infinite coordinate is left out.
     pub at: BTreeMap<Coordinate, f64>,
-    /// Number of places where errors were measured.
+    /// Number of points at which errors were measured.
     pub points: Option<u32>,
-    /// How far the values at the nodes themselves may be from the model's.
+    /// Estimated error of the values at the nodes themselves.
     pub quadrature: Option<f64>,
-    /// How far an isotropic lobe with roughness √(σx σy) in place of this one would err.
+    /// The error of E if an isotropic lobe of roughness √(σx σy) is used instead of this lobe.
     pub stand_in: Option<f64>,
 }
 
@@ -159,9 +159,8 @@ impl Certificate {
         self.errors.get(&of).map(|errors| errors.largest)
     }
 
-    /// Checks what a reader relies on.
+    /// Checks that all figures are finite, and that no error is negative.
     pub(super) fn check(&self) -> Result<(), String> {
-        // Of coordinates an azimuth may be negative.
         let lies = |(key, figure): &(&String, &f64)| {
             !figure.is_finite() || key.contains(ERROR) && **figure < 0.0
         };
@@ -174,7 +173,7 @@ impl Certificate {
     }
 }
 
-/// A certificate as it stands in files: figures by key.
+/// A certificate in a file: figures by key.
 pub(super) type Figures = BTreeMap<String, f64>;
 
 const ERROR: &str = "_error";

@@ -1,5 +1,6 @@
-//! The checksum of a set: a CRC-32 over everything, its own eight hexadecimal digits in the
-//! document taken as zeros, so that a damaged shape or axis is found like a damaged value.
+//! The checksum of a set: a CRC-32 over the whole file, header included, so that a damaged shape or
+//! axis is found like a damaged value. Its own eight hexadecimal digits, in the document, count as
+//! zeros.
 
 use alloc::format;
 use alloc::string::String;
@@ -15,13 +16,14 @@ const IN_HEADER: &[u8] = br#"\"checksum\":\""#;
 pub(super) const NONE: &str = "00000000";
 const DIGITS: usize = NONE.len();
 
-/// Where the digits stand.
+/// The offset of the digits, which follow `prefix`.
 fn position(head: &[u8], prefix: &[u8]) -> Option<usize> {
     let at = head.windows(prefix.len()).position(|window| window == prefix)? + prefix.len();
     (at + DIGITS <= head.len()).then_some(at)
 }
 
-/// Where they stand in a safetensors file: in its header, whose length comes first.
+/// The offset of the digits in a safetensors file: in its header, whose length is the first eight
+/// bytes.
 fn position_in_file(file: &[u8]) -> Option<usize> {
     let header = u64::from_le_bytes(file.get(..8)?.try_into().ok()?);
     position(file.get(..usize::try_from(header).ok()?.checked_add(8)?)?, IN_HEADER)
@@ -38,13 +40,13 @@ fn digits(bytes: &[u8], at: usize, more: impl Iterator<Item = [u8; 4]>) -> [u8; 
     text.as_bytes().try_into().expect("32 bits are eight digits")
 }
 
-/// The CRC-32 (ISO-HDLC) of a file as eight hexadecimal digits, by which another file knows it.
+/// The CRC-32 (ISO-HDLC) of some bytes as eight hexadecimal digits.
 pub fn crc32(bytes: &[u8]) -> String {
     format!("{:08x}", crc32fast::hash(bytes))
 }
 
 /// Fills in the checksum of a safetensors file, for tools that edit files; false if the file has no
-/// place for it.
+/// `checksum` entry.
 pub fn seal(file: &mut [u8]) -> bool {
     let Some(at) = position_in_file(file) else { return false };
     let digits = digits(file, at, iter::empty());
@@ -58,10 +60,8 @@ pub(super) fn is_sealed(file: &[u8]) -> Option<bool> {
     Some(digits(file, at, iter::empty()) == file[at..at + DIGITS])
 }
 
-/// A document with its checksum, over itself and the values it describes, as little-endian f32 in
-/// table order.
-///
-/// It is what an image carries. `None` if there is no place for the checksum.
+/// The document of an OpenEXR image, with its checksum over the document and the values that it
+/// describes, as little-endian f32 in table order; `None` if it has no `checksum` entry.
 pub fn seal_document<'a>(
     document: &str,
     values: impl IntoIterator<Item = &'a f32>,
@@ -70,7 +70,7 @@ pub fn seal_document<'a>(
     let values = values.into_iter().map(|x| x.to_le_bytes());
     let digits = digits(document.as_bytes(), at, values);
     let digits = core::str::from_utf8(&digits).expect("hexadecimal digits are ASCII");
-    // In a damaged document the place may be in the middle of a character.
+    // In a damaged document the digits may begin or end inside a character.
     Some(format!("{}{digits}{}", document.get(..at)?, document.get(at + DIGITS..)?))
 }
 
@@ -90,7 +90,7 @@ mod tests {
         let mut file = file(r#"{"a":"{\"checksum\":\"deadbeef\",\"b\":1}"}"#, b"values");
         assert_eq!(is_sealed(&file), Some(false));
         assert!(seal(&mut file) && is_sealed(&file) == Some(true));
-        // As the format has it: the checksum of the file with zeros in place of the digits.
+        // The checksum is that of the file with zeros instead of the digits.
         let at = position_in_file(&file).unwrap();
         let mut zeroed = file.clone();
         zeroed[at..at + DIGITS].fill(b'0');

@@ -1,5 +1,5 @@
-//! The safetensors container: one file holds all tables of a set and the document that describes
-//! them, in its metadata. One checksum covers the whole file, header included.
+//! The safetensors container: one file holds all tables of a set and, in its metadata, the document
+//! that describes them.
 
 use alloc::borrow::ToOwned;
 use alloc::format;

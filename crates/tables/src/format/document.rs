@@ -1,6 +1,4 @@
-//! The JSON document that describes a set: where it comes from, its materials, axes and tables.
-//!
-//! `docs/format.md` is the specification.
+//! The JSON document that describes a set: its origin, materials, axes and tables.
 
 use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::format;
@@ -23,10 +21,10 @@ use crate::error::LoadError;
 pub const FORMAT: &str = "microfacet-tables";
 /// Version of the format that this crate writes, and the only one that it reads.
 pub const VERSION: u32 = 4;
-/// Most tables of a set: each takes a kilobyte of memory besides its values, which may be few.
+/// Largest number of tables in a set, since a table of few values takes a kilobyte of memory too.
 const MOST_TABLES: usize = 1 << 16;
 
-/// Where a set comes from, and how its numbers are to be read.
+/// The origin of a set, and how its numbers are to be read.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {
     /// Program and version that baked the set.
@@ -35,11 +33,11 @@ pub struct Provenance {
     pub numerics: u32,
     /// Licence of the data.
     pub license: String,
-    /// The conventions that a reader could get wrong, in words.
+    /// Conventions that readers need, in words.
     pub conventions: BTreeMap<String, String>,
-    /// The named materials that it was baked for: all that a recipe states, to bake it again.
+    /// The named materials that it was baked for, with all that a recipe states of them.
     pub materials: Vec<MaterialEntry>,
-    /// What a cache keeps the tables under; empty in a set.
+    /// The key of the tables in a cache; empty in a set.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub key: String,
 }
@@ -81,7 +79,6 @@ fn of_table(name: &str, why: impl ToString) -> LoadError {
 }
 
 impl Document {
-    /// The document of a set.
     pub(super) fn of(provenance: &Provenance, tables: &[Table]) -> Result<Self, LoadError> {
         provenance.check()?;
         let mut names = BTreeSet::new();
@@ -112,7 +109,6 @@ impl Document {
         serde_json::to_string(self).map_err(invalid)
     }
 
-    /// Reads a document of this version.
     pub(super) fn from_json(json: &str) -> Result<Self, LoadError> {
         check_version(json)?;
         let document: Self = serde_json::from_str(json).map_err(invalid)?;
@@ -132,7 +128,7 @@ impl Document {
         Ok(document)
     }
 
-    /// The tables, with the values of each by stack and number in it.
+    /// The tables; `values` gives those of a table by its stack and its number there.
     pub(super) fn tables(
         &self,
         mut values: impl FnMut(&Stack, usize) -> Result<Vec<f32>, String>,
@@ -188,7 +184,7 @@ pub fn describe(provenance: &Provenance, tables: &[Table]) -> Result<String, Loa
     Document::of(provenance, tables)?.to_json()
 }
 
-/// The axes of a table as its document has them: the same text where tables share an axis.
+/// The axes of a table as JSON of its document; tables that share an axis have the same text.
 pub fn stated_axes(subject: &Subject, axes: &[Axis]) -> Vec<String> {
     let single = subject.single();
     let text = |axis| serde_json::to_string(&StoredAxis::of(axis, single)).unwrap_or_default();
@@ -209,8 +205,8 @@ pub fn stated_tables(json: &str) -> Result<Vec<(String, Vec<String>)>, LoadError
     all.collect()
 }
 
-/// Reassembles a set from the document of [`describe`] and the decoded values of each table, for
-/// which it asks in order.
+/// Reassembles a set from the document of [`describe`]; `values` is called once for each table, in
+/// order, and returns its decoded values.
 ///
 /// # Errors
 /// [`LoadError`] if the document is not that of a set, or a table is not valid.

@@ -13,15 +13,14 @@ use crate::error::LoadError;
 
 /// The `format` entry of the document.
 const FORMAT: &str = "microfacet-tables index";
-/// Version of the document.
 const VERSION: u32 = 2;
 
 /// Which of the numbered sets in a folder holds which materials; `docs/format.md` has an example.
 ///
-/// Each file is a whole set with all that its materials need. To serve some materials of a library
-/// of any size, read the files that [`files_of`](Self::files_of) names, one after the other, keep
-/// only what serves them (`Tables::only` of the crate `microfacet-sampler`), and put that together
-/// (`Tables::joined`).
+/// Each file is a whole set with all tables that its materials need. To read some materials of a
+/// library of any size, read the files that [`files_of`](Self::files_of) names, one after the
+/// other, keep only the tables of these materials (`Tables::only` of the crate
+/// `microfacet-sampler`), and join them (`Tables::joined`).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Index {
     /// The sets, in order.
@@ -99,9 +98,9 @@ impl Index {
     /// The file in a folder that holds the index of the numbered sets there.
     pub const FILE: &str = "tables.index.json";
 
-    /// The name of a numbered set, the first being 1, with a checksum:
-    /// `tables-00001-9d2ad2a6.safetensors`. Two sets never have the same name, so that a new
-    /// library stands beside the old one until its index takes the place of that of the old.
+    /// The name of a numbered set, the first being 1, with its checksum:
+    /// `tables-00001-9d2ad2a6.safetensors`. The checksum keeps a new library from overwriting the
+    /// files of an old one, which are in use until the new index replaces the old index.
     fn file_name(number: usize, crc32: &str) -> String {
         format!("tables-{number:05}-{crc32}.safetensors")
     }
@@ -120,7 +119,7 @@ impl Index {
             && crc32.bytes().all(hexadecimal)
     }
 
-    /// Reads the document.
+    /// Reads an index from its JSON.
     ///
     /// # Errors
     /// [`LoadError`] if it is no index, of another version, names a file that is not that of a
@@ -150,7 +149,7 @@ impl Index {
         Ok(Self { sets })
     }
 
-    /// The document.
+    /// The index as JSON.
     pub fn to_json(&self) -> String {
         let document =
             Document { format: FORMAT.into(), version: VERSION, sets: self.sets.clone() };
@@ -167,8 +166,8 @@ impl Index {
         self.sets.iter().map(|set| set.materials.len()).sum()
     }
 
-    /// The sets that hold these materials, each with those of its own; names that no set has are
-    /// left out.
+    /// The sets that hold these materials, each with the names that it holds; names that no set has
+    /// are left out.
     pub fn files_of<'a>(&'a self, names: &[&'a str]) -> Vec<(&'a IndexedSet, Vec<&'a str>)> {
         let wanted: BTreeSet<&str> = names.iter().copied().collect();
         let held = |set: &'a IndexedSet| {

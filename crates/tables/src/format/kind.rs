@@ -1,4 +1,4 @@
-//! What a table holds.
+//! The kinds of tables.
 
 use serde::{Deserialize, Serialize};
 
@@ -21,7 +21,7 @@ pub enum Kind {
     VisibleSlopeConditional,
     /// As `Shadowing` for one distribution outside the family, over view.
     RadialShadowing,
-    /// As `VisibleSlope` for one such distribution, over view × u₁.
+    /// As `VisibleSlope` for one distribution outside the family, over view × u₁.
     RadialSlope,
     /// Slope across over the in-plane slope x × u₂, in units of √(1 + x²), or of √(1 − x²/R²) where
     /// no slope exceeds R.
@@ -57,16 +57,16 @@ impl Kind {
     /// index of the last axis.
     pub const VALUE_AND_SLOPE: Channels = &["value", "slope"];
     /// Channels of albedos with F = 1: E − 1, and the excess of the other moments over E times a
-    /// mirror's, a form in which they are smooth.
+    /// mirror's, which are smooth.
     pub const MOMENTS: Channels = &["e", "bias", "f82"];
     /// Channels of a conductor's albedo.
     pub const RGB: Channels = &["red", "green", "blue"];
     /// Channels of a dielectric's albedo: the shares of light.
     pub const SHARES: Channels = &["reflection", "transmission"];
-    /// One more channel, for albedos of lobes that may be tilted: μ/(μ + A), where A is the area of
-    /// the microsurface seen, by which G1(v) is clamped at one.
+    /// One more channel, for albedos of ellipsoids: μ/(μ + A), where A is the visible area of the
+    /// microsurface. Where A < μ, G1(v) is clamped at one.
     ///
-    /// The other channels are without that clamp, which is a kink in E: apart, both are smooth.
+    /// The clamp is a kink of E, so the other channels leave it out: apart, both are smooth.
     pub const CLAMP: &'static str = "clamp";
 
     /// The name used in files.

@@ -1,4 +1,4 @@
-//! Lobes: whose normals a material has, or a table is of.
+//! The lobes of materials and tables.
 
 use alloc::format;
 use alloc::string::String;
@@ -12,8 +12,8 @@ use super::subject::joined_name;
 use crate::interval::Interval;
 use crate::{GAMMA_MIN, SIGMA_MAX};
 
-/// Two numbers are the same within this after a coordinate and its inverse: 1/(γ−1) of the end of a
-/// range may round to just outside it.
+/// Relative difference within which two numbers count as the same: 1/(γ−1) of the end of a range
+/// may round to just outside it.
 pub const SAME: f64 = 1e-9;
 
 /// The slope roughness σ of a microfacet lobe, along the tangent (x) and the bitangent (y).
@@ -38,7 +38,7 @@ pub enum Roughness {
 }
 
 impl Roughness {
-    /// Every σx and σy: of tables of slopes that are divided by them.
+    /// Every σx and σy, for tables of slopes that are divided by them.
     pub const ALL: Self = Self::Isotropic(Interval { min: 0.0, max: f64::INFINITY });
 
     /// The isotropic roughness of range `sigma`; [`Roughness::Smooth`] if that is 0 alone.
@@ -89,7 +89,8 @@ impl Roughness {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LobeForm {
-    /// Round lobes of the Student-t family; tables of slopes that are divided by σ are of all.
+    /// Round lobes of the Student-t family. Tables of slopes divided by σ have this form too, and
+    /// serve all lobes of the family.
     Family,
     /// A Student-t lobe, or a range of them, with σx and σy.
     StudentT,
@@ -101,12 +102,12 @@ pub enum LobeForm {
 
 /// A lobe, or the range of lobes of a material whose texture drives σ or γ, or of a table.
 ///
-/// `D` is the distribution of one outside the Student-t family: its label, such as `gtr:0.2,1.5`,
-/// or whatever else says it.
+/// `D` describes a distribution outside the Student-t family: by default by its label, such as
+/// `gtr:0.2,1.5`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LobeSpec<D = String> {
-    /// σx and σy ≥ 0. Of a material outside the family: the median slope of the normals, which is
-    /// the scale of its tables.
+    /// σx and σy ≥ 0. For a material outside the family it is the median slope of the normals, by
+    /// which the slopes of its tables are divided.
     pub roughness: Roughness,
     /// The shape γ > 3/2; `INFINITY` is Beckmann, 2 is GGX. It has no meaning outside the family.
     pub gamma: Interval,
@@ -151,7 +152,7 @@ impl<D> LobeSpec<D> {
         }
     }
 
-    /// Whether it is round lobes of the family.
+    /// Whether its form is [`LobeForm::Family`].
     pub fn is_family(&self) -> bool {
         self.form() == LobeForm::Family
     }
@@ -213,7 +214,7 @@ impl<D> LobeSpec<D> {
         [x, y, self.gamma].into_iter().all(Interval::is_point)
     }
 
-    /// The same lobe with its distribution in other terms.
+    /// The same lobe with another description of its distribution.
     pub fn map<E>(&self, distribution: impl FnOnce(&D) -> E) -> LobeSpec<E> {
         let Self { roughness, gamma, theta, .. } = *self;
         let distribution = self.distribution.as_ref().map(distribution);
@@ -222,8 +223,8 @@ impl<D> LobeSpec<D> {
 }
 
 impl<D: Clone + PartialEq> LobeSpec<D> {
-    /// The lobe that tables of its albedo are of: its own if it is a single one, and the round one
-    /// of [`round_sigma`](Self::round_sigma) for ranges of an anisotropic one.
+    /// The lobe that tables of its albedo are baked for: itself, or [`round`](Self::round) for
+    /// ranges of an anisotropic lobe.
     #[must_use]
     pub fn tabulated(&self) -> Self {
         if self.form() == LobeForm::StudentT && !self.is_single() {
@@ -233,7 +234,8 @@ impl<D: Clone + PartialEq> LobeSpec<D> {
         }
     }
 
-    /// The round lobe of σ = √(σx σy) that usually stands in for one that is not, without a tilt.
+    /// The round lobe of σ = √(σx σy), without a tilt, that usually stands in for one that is not
+    /// round.
     #[must_use]
     pub fn round(&self) -> Self {
         let [x, y] = self.sigmas();
@@ -241,9 +243,8 @@ impl<D: Clone + PartialEq> LobeSpec<D> {
         Self::family(Roughness::isotropic(sigma), self.gamma)
     }
 
-    /// Whether a table of this lobe, or of this range of round ones, is of another: σ within the
-    /// rounding of single precision, in which lobes take it, and γ within [`SAME`]. A tilt is the
-    /// same number.
+    /// Whether a table of this lobe, or of this range of round ones, covers another: σ within the
+    /// rounding of single precision, in which lobes take it, γ within [`SAME`], and equal tilts.
     pub fn contains(&self, other: &Self) -> bool {
         if self.distribution.is_some() || other.distribution.is_some() {
             return self.distribution == other.distribution;
@@ -260,7 +261,7 @@ impl<D: Clone + PartialEq> LobeSpec<D> {
 }
 
 impl LobeSpec {
-    /// What it is as part of the name of a table; empty for all that tables can cover.
+    /// The part of a table's name that states the lobe; empty for all lobes that tables can cover.
     pub(super) fn label(&self) -> String {
         let part = |name: &str, Interval { min, max }: Interval| {
             if min == max { format!("{name}_{min}") } else { format!("{name}_{min}_to_{max}") }
@@ -297,17 +298,16 @@ impl LobeSpec {
     }
 }
 
-/// Whether a number is in a range, or beyond an end by no more than this part of it.
+/// Whether a number is in a range, or beyond an end by no more than `slack` of that end.
 fn within([min, max]: [f64; 2], x: f64, slack: f64) -> bool {
     x >= min - slack * min && x <= max + slack * max
 }
 
-/// √(xy), of equal numbers their bits.
+/// √(xy); equal numbers are returned without rounding.
 fn mean(x: f64, y: f64) -> f64 {
     if x == y { x } else { libm::sqrt(x * y) }
 }
 
-/// The middle of a range.
 fn middle([min, max]: [f64; 2]) -> f64 {
     if min == max { min } else { 0.5 * (min + max) }
 }
@@ -316,7 +316,6 @@ fn middle([min, max]: [f64; 2]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A tilted lobe.
     fn tilted(sigma: [f64; 2], gamma: f64, theta: [f64; 3]) -> LobeSpec {
         LobeSpec { theta: Some(theta), ..LobeSpec::student_t(sigma, gamma) }
     }

@@ -23,7 +23,6 @@ pub struct MaterialEntry {
     pub fresnel: Option<Reflectance>,
 }
 
-/// A material as files have it.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "MaterialEntry", deny_unknown_fields)]
 struct InFile {

@@ -1,5 +1,4 @@
-//! The file format: what a table holds and how, and the container of a set; `docs/format.md`
-//! specifies it.
+//! The file format of tables and sets, which `docs/format.md` specifies.
 
 mod certificate;
 mod checksum;
@@ -32,7 +31,7 @@ pub use reflectance::Reflectance;
 pub use subject::{Side, Subject, joined_name};
 pub use table::Table;
 
-/// Refuses what is not sound, and says why.
+/// The error `why` unless `sound`.
 fn ensure(sound: bool, why: impl FnOnce() -> String) -> Result<(), String> {
     if sound { Ok(()) } else { Err(why()) }
 }

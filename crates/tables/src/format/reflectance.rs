@@ -1,4 +1,4 @@
-//! Reflectances: of the facets of a material, and what an albedo is for.
+//! Reflectances of the facets of a material, or that a table of albedos is for.
 
 use alloc::format;
 use alloc::string::String;
@@ -13,12 +13,12 @@ use super::subject::Side;
 use crate::axis::ReflectanceRoot;
 use crate::interval::Interval;
 
-/// The reflectance of the facets of a material, or that an albedo is for.
+/// The reflectance of the facets of a material, or that a table of albedos is for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reflectance {
-    /// F = 1. A table of it also holds the parts of E that give every Schlick reflectance and
-    /// OpenPBR's metals: the moments.
+    /// F = 1. Its table holds the moments, of which the albedos of every Schlick reflectance and of
+    /// OpenPBR's metals are made.
     Mirror,
     /// Of a material: Schlick's approximation with this reflectance at normal incidence for red,
     /// green and blue, in [0, 1]. In files it is one number where the three are equal.
@@ -93,8 +93,8 @@ impl Reflectance {
         if index.max == 1.0 { vec![of(Side::Thin)] } else { Side::ALL.map(of).into() }
     }
 
-    /// What it is as part of the name of a table; empty for the moments, which nearly all albedos
-    /// have.
+    /// The part of a table's name that states the reflectance; empty for the moments, which nearly
+    /// all tables of albedos hold.
     pub(super) fn label(&self) -> String {
         let list = |[r, g, b]: &[f64; 3]| format!("{r}_{g}_{b}");
         match self {
@@ -136,7 +136,7 @@ impl Reflectance {
         Some(ReflectanceRoot.quantity(0.5 * (a + b)))
     }
 
-    /// Whether a table of this reflectance is of another.
+    /// Whether a table of this reflectance covers another.
     pub fn contains(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Interface { side, index }, Self::Interface { side: seen, index: within }) => {
@@ -146,10 +146,10 @@ impl Reflectance {
         }
     }
 
-    /// Checks that a table may be of it, and its numbers.
+    /// Checks that a table can be of this reflectance, and its numbers.
     ///
     /// # Errors
-    /// What is wrong.
+    /// A message that says what is wrong.
     pub fn check_of_table(&self) -> Result<(), String> {
         match self {
             Self::Schlick(_) | Self::Dielectric(_) => Err(format!(
@@ -159,7 +159,7 @@ impl Reflectance {
         }
     }
 
-    /// Checks that a material may have it, and its numbers; the error says what is wrong.
+    /// Checks that a material can have this reflectance, and its numbers.
     pub(super) fn check_of_material(&self) -> Result<(), String> {
         match self {
             Self::Interface { .. } => Err("an interface is of a table, not of a material".into()),

@@ -20,7 +20,6 @@ pub(super) struct AxisRule {
     pub(super) interpolations: &'static [Interpolation],
 }
 
-/// What a table of a kind and subject looks like.
 pub(super) struct Layout {
     pub(super) axes: Vec<AxisRule>,
     pub(super) channels: Vec<&'static str>,
@@ -52,7 +51,7 @@ const SLOPE: AxisRule = axis("slope", &["half_tangent"], &[Hermite]);
 /// κ of `rational` is the largest slope of a distribution that has one.
 const SLOPE_OR_LARGEST: AxisRule = axis("slope", &["half_tangent", "rational"], &[Linear]);
 
-/// G1/q is positive, and limited as the ratio of κ to the projected area is.
+/// G1/q is positive, and as limited as the ratio of κ to the projected area.
 const RATIOS: [f32; 2] = [f32::MIN_POSITIVE, 1e3];
 /// Distances of a half tangent in [−1, 1] from its end.
 const DISTANCES: [f32; 2] = [0.0, 2.0];
@@ -84,7 +83,7 @@ impl Kind {
         }
     }
 
-    /// Whether it is of one distribution outside the family.
+    /// Whether tables of this kind are of one distribution outside the family.
     pub(super) const fn is_radial(self) -> bool {
         matches!(
             self,
@@ -95,10 +94,9 @@ impl Kind {
         )
     }
 
-    /// Whether it holds directional albedos or averages of them.
-    ///
-    /// These depend on light and view, not on the view alone, so that each table is for one form of
-    /// masking and one reflectance.
+    /// Whether tables of this kind hold directional albedos or averages of them. Albedos depend on
+    /// light and view, not on the view alone, so each table is for one form of masking and one
+    /// reflectance.
     pub const fn is_albedo(self) -> bool {
         matches!(self, Self::Albedo | Self::AlbedoAverage)
     }
@@ -114,12 +112,13 @@ fn albedo(subject: &Subject) -> Layout {
     };
     axes.extend(reflectance.indices().map(|_| ETA));
     axes.push(if reflectance.side() == Some(Side::Dense) { INNER_VIEW } else { VIEW });
-    // G1 of a tilted lobe is clamped at one: less of it may be seen than of the macrosurface.
+    // G1 of a tilted lobe is clamped at one, since the visible area of the microsurface may be less
+    // than that of the macrosurface.
     let clamp = (form == LobeForm::Ellipsoid).then_some(Kind::CLAMP);
     moments(axes, reflectance.channels().iter().copied().chain(clamp).collect())
 }
 
-/// The layout of moments less a mirror's, each of which is in [0, 1], or of shares of light.
+/// The layout of moments less those of a mirror, which are all in [0, 1], or of shares of light.
 fn moments(axes: Vec<AxisRule>, channels: Vec<&'static str>) -> Layout {
     Layout { axes, checked: channels.len(), channels, range: [-1.0, 1.0] }
 }

@@ -1,5 +1,5 @@
-//! Tables of one layout, as a document describes them: what all have in common once, and what each
-//! is of in columns with an entry a table. Their values are one tensor.
+//! Tables of one layout, as a document describes them: what all have in common once, and the rest
+//! in columns with one entry for each table. Their values are one tensor.
 
 use alloc::borrow::ToOwned;
 use alloc::collections::{BTreeMap, BTreeSet};
@@ -21,16 +21,14 @@ use super::stored::{Range, Sigma, StoredAxis};
 use super::subject::{Side, Subject, joined_name};
 use super::table::Table;
 
-/// Tables of one layout.
-///
-/// Columns that no table has an entry in are left out.
+/// Tables of one layout. Empty columns are left out of the file.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Stack {
     /// The name of the tensor, and of a table that is alone in it.
     pub(super) name: String,
-    /// The number of tables, which the tensor has along a first dimension of its own; missing of
-    /// one without that dimension.
+    /// The number of tables, the first dimension of the tensor; missing for a single table, whose
+    /// tensor does not have that dimension.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     count: Option<usize>,
     kind: Kind,
@@ -65,7 +63,7 @@ pub(super) struct Stack {
     certificate: BTreeMap<String, Vec<Option<Figure>>>,
 }
 
-/// A figure of a certificate, whole numbers without a point.
+/// A figure of a certificate; whole numbers are written without a decimal point.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(untagged)]
 enum Figure {
@@ -88,7 +86,6 @@ impl From<Figure> for f64 {
     }
 }
 
-/// The form of the reflectances.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Optics {
@@ -106,7 +103,7 @@ enum Eta {
 }
 
 impl Stack {
-    /// A stack of one table, whose axes are those of the document at these places.
+    /// A stack of one table, whose axes have these indices in the document.
     fn one(table: &Table, axes: Vec<usize>) -> Self {
         let Subject { lobe, masking, reflectance } = &table.subject;
         let codec = Codec::fit(table.precision, &table.values, table.channels.len());
@@ -148,12 +145,11 @@ impl Stack {
         }
     }
 
-    /// The number of tables.
     pub(super) fn len(&self) -> usize {
         self.count.unwrap_or(1)
     }
 
-    /// Whether a table follows in the same tensor.
+    /// Whether the tensor can take the only table of another stack as well.
     fn takes(&self, next: &Self) -> bool {
         let of = |stack: &Self| {
             let Self { kind, lobe, masking, reflectance, side, precision, .. } = *stack;
@@ -183,7 +179,7 @@ impl Stack {
         self.certificate.values_mut().for_each(|column| column.resize(count + 1, None));
     }
 
-    /// The dimensions of the tensor; `None` if they are larger than any file.
+    /// The dimensions of the tensor; `None` if an axis is longer than any file has values.
     pub(super) fn shape(&self, axes: &[StoredAxis]) -> Option<Vec<usize>> {
         let along = self.axes.iter().map(|&i| axes.get(i)?.len());
         let all = self.count.map(Some).into_iter().chain(along);
@@ -218,7 +214,7 @@ impl Stack {
         })
     }
 
-    /// What the i-th table is of; the error says what is missing.
+    /// The subject of the i-th table; the error names the missing column.
     fn subject(&self, i: usize) -> Result<Subject, String> {
         let missing = |key: &str| format!("no `{key}`, which its lobe or reflectance needs");
         let sigma = self.sigma.get(i).map(|sigma| Roughness::from(*sigma));
@@ -258,7 +254,6 @@ impl Stack {
         self.certificate.iter().filter_map(of).collect::<Figures>().try_into()
     }
 
-    /// How the values of the i-th table are stored.
     pub(super) fn codec(&self, i: usize) -> Result<Codec, String> {
         let [scale, offset] =
             [&self.scale, &self.offset].map(|column| column.get(i).map_or(&[][..], |own| own));
@@ -266,7 +261,6 @@ impl Stack {
         codec.map_err(ToOwned::to_owned)
     }
 
-    /// The name of the i-th table.
     pub(super) fn table_name(&self, i: usize) -> Result<String, String> {
         self.subject(i).map(|subject| self.name_of(&subject))
     }
@@ -275,14 +269,13 @@ impl Stack {
         if self.count.is_none() { self.name.clone() } else { subject.name(self.kind) }
     }
 
-    /// The i-th table, of these values.
     pub(super) fn table(
         &self,
         i: usize,
         axes: &[StoredAxis],
         values: Vec<f32>,
     ) -> Result<Table, String> {
-        // So no axis has more nodes than there are values.
+        // Checked before axes are made, which take memory for as many nodes as they state.
         let shape = self.shape(axes).unwrap_or_default();
         let shape = &shape[usize::from(self.count.is_some())..];
         let expected = shape.iter().try_fold(1, |product: usize, n| product.checked_mul(*n));
@@ -320,7 +313,7 @@ pub(super) fn stacked(tables: &[Table]) -> (Vec<StoredAxis>, Vec<Stack>) {
             })
         };
         let stack = Stack::one(table, table.axes.iter().map(place).collect());
-        // A table among others is named after what it is of.
+        // Names are not stored for tables that share a tensor, but made of their subjects.
         let is_named = table.name == table.subject.name(table.kind);
         match stacks.last_mut() {
             Some(last) if last_is_named && is_named && last.takes(&stack) => last.push(stack),
@@ -332,7 +325,7 @@ pub(super) fn stacked(tables: &[Table]) -> (Vec<StoredAxis>, Vec<Stack>) {
     (axes, stacks)
 }
 
-/// Names the tensors of several tables after what these have in common.
+/// Names each tensor of several tables after what its tables have in common.
 fn name(stacks: &mut [Stack]) {
     let alone = stacks.iter().filter(|stack| stack.count.is_none());
     let taken: BTreeSet<String> = alone.map(|stack| stack.name.clone()).collect();

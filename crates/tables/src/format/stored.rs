@@ -88,7 +88,7 @@ impl From<Sigma> for Roughness {
     }
 }
 
-/// The γ of fewest digits whose s = 1/(γ−1) is exactly this; where none is, the nearest.
+/// The γ of fewest digits for which 1/(γ−1) is exactly `s`; where there is none, the nearest.
 pub(super) fn gamma_of(s: f64) -> f64 {
     let gamma = gamma_of_s(s);
     let is_same = |gamma: &f64| s_of_gamma(*gamma) == s;
@@ -97,14 +97,14 @@ pub(super) fn gamma_of(s: f64) -> f64 {
     rounded.chain(near).find(is_same).unwrap_or(gamma)
 }
 
-/// What a table is of, as far as it is single numbers.
+/// The parameters of a table's subject that are single numbers.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Single {
-    /// γ, of the family where it covers one.
+    /// γ of a lobe, or of the family where the table covers one γ.
     pub(super) gamma: Option<f64>,
-    /// σ of the family, where it covers one.
+    /// σ of the family, where the table covers one σ.
     pub(super) sigma: Option<f64>,
-    /// Whether it is of one lobe, and not of the family.
+    /// Whether the table is of one lobe, not of the family.
     pub(super) is_lobe: bool,
     /// σx and σy of an upright lobe.
     pub(super) sigmas: Option<[f64; 2]>,
@@ -116,7 +116,8 @@ impl Single {
         self.gamma.filter(|_| self.is_lobe)
     }
 
-    /// A mapping as all tables have it that differ in what they are of alone.
+    /// The mapping without the σ and γ of the table's own lobe, so that tables of different lobes
+    /// share an axis.
     fn shared(self, mapping: Mapping) -> Mapping {
         match mapping {
             Mapping::Azimuth(azimuth) if Some(azimuth.sigma) == self.sigmas => {
@@ -133,7 +134,7 @@ impl Single {
         }
     }
 
-    /// The mapping of the table itself: σ and γ of its lobe are constants of it.
+    /// The mapping with the σ and γ of the table's own lobe.
     fn own(self, mapping: Mapping) -> Mapping {
         match (mapping, self.sigmas, self.of_lobe()) {
             (Mapping::Azimuth(azimuth), Some(sigma), _) if azimuth.sigma == [0.0; 2] => {
@@ -162,7 +163,7 @@ pub(super) struct StoredAxis {
     nodes: Option<Nodes>,
 }
 
-/// Nodes where the mapping places so many of them, or their coordinates.
+/// The number of nodes where the mapping prescribes them, else their coordinates.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "a number of nodes, or their coordinates")]
 enum Nodes {
@@ -174,7 +175,6 @@ enum Nodes {
 const MOST_NODES: usize = 1 << 31;
 
 impl StoredAxis {
-    /// An axis of a table that is of these numbers.
     pub(super) fn of(axis: &Axis, single: Single) -> Self {
         let Axis { ref name, mapping, interpolation, ref nodes } = *axis;
         let mapping = single.shared(mapping);
@@ -186,12 +186,12 @@ impl StoredAxis {
         Self { name: name.clone(), mapping, interpolation, nodes }
     }
 
-    /// A text that tells it from other axes.
+    /// A text that differs for different axes.
     pub(super) fn key(&self) -> String {
         format!("{self:?}")
     }
 
-    /// The number of values along the axis; `None` of more than any file has.
+    /// The number of values along the axis; `None` if it is more than any file has.
     pub(super) fn len(&self) -> Option<usize> {
         let nodes = match &self.nodes {
             None => 1,
@@ -201,8 +201,7 @@ impl StoredAxis {
         (nodes <= MOST_NODES).then(|| self.mapping.values(nodes))
     }
 
-    /// The axis of a table that is of these numbers; the error says what is wrong. It takes memory
-    /// for as many numbers as it has nodes.
+    /// The axis of one table. Memory is taken for as many numbers as the file states nodes.
     pub(super) fn axis(&self, single: Single) -> Result<Axis, String> {
         let Self { name, mapping, interpolation, nodes } = self;
         let (mapping, interpolation) = (single.own(*mapping), *interpolation);
@@ -232,7 +231,7 @@ mod tests {
         for gamma in [1.501, 1.8, 2.0, 2.43, 3.1, 1e6, 1.7320508075688772, f64::INFINITY] {
             assert_eq!(gamma_of(s_of_gamma(gamma)), gamma);
         }
-        // Of an s that no γ has.
+        // An s that 1/(γ−1) reaches for no γ.
         let s = [0.7, 1.9].into_iter().find(|&s| s_of_gamma(gamma_of_s(s)) != s);
         for s in s.into_iter().chain([1.25, 0.3]) {
             assert!((s_of_gamma(gamma_of(s)) - s).abs() < 1e-15);

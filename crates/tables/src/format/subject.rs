@@ -1,5 +1,5 @@
-//! The subject of a table, as data in its description: whose normals, under which masking and
-//! reflectance, for which materials. Readers find tables by it; names are for people.
+//! The subject of a table: its lobes, masking and reflectance. Readers find tables by these data,
+//! not by names.
 
 use alloc::format;
 use alloc::string::String;
@@ -38,7 +38,7 @@ impl Side {
     }
 }
 
-/// A name from its parts, without the empty ones.
+/// The parts of a name joined by `_`, without the empty ones.
 pub fn joined_name(parts: &[&str]) -> String {
     let parts: Vec<&str> = parts.iter().copied().filter(|part| !part.is_empty()).collect();
     parts.join("_")
@@ -48,7 +48,8 @@ pub fn joined_name(parts: &[&str]) -> String {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Subject {
     /// The lobes that it was baked and measured for; its axes may have nodes beyond, which
-    /// interpolation reads. Of slopes that are divided by σ, and outside the family: every σ.
+    /// interpolation reads. Tables of slopes divided by σ, and those of a distribution outside the
+    /// family, are of every σ.
     pub lobe: LobeSpec,
     /// The form of G2 of an albedo; `None` where values depend on one direction only.
     pub masking: Option<Masking>,
@@ -62,14 +63,13 @@ impl Subject {
         Self { lobe, masking: None, reflectance: None }
     }
 
-    /// The subject of a table of one direction over a range of shapes, as [min, max] of 1/(γ−1).
+    /// The subject of a table of one direction over the range [min, max] of s = 1/(γ−1).
     pub fn shapes(s: [f64; 2]) -> Self {
         let [max, min] = s.map(gamma_of);
         Self::of(LobeSpec::family(Roughness::ALL, Interval { min, max }))
     }
 
-    /// The name of a table of this kind: made of what it is of, with characters that file names can
-    /// have.
+    /// The name of a table of this kind and subject, in characters that file names can have.
     pub fn name(&self, kind: Kind) -> String {
         let masking = self.masking.map_or("", Masking::name);
         let reflectance = self.reflectance.map(|of| of.label()).unwrap_or_default();

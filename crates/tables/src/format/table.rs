@@ -21,7 +21,7 @@ use crate::interval::Interval;
 /// `[axes[0].len(), …, axes[n−1].len(), channels.len()]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// Name inside its set, for people; `kind` and `subject` hold what it says as data.
+    /// Name inside its set, for messages; readers find tables by `kind` and `subject`.
     pub name: String,
     /// What it holds.
     pub kind: Kind,
@@ -35,7 +35,7 @@ pub struct Table {
     pub values: Vec<f32>,
     /// How the values are stored in a file.
     pub precision: Precision,
-    /// Errors that its bake measured on it.
+    /// The errors measured at baking.
     pub certificate: Certificate,
 }
 
@@ -84,7 +84,7 @@ impl Table {
         sum
     }
 
-    /// An end of the range of γ that the table says it covers and its axis does not hold.
+    /// An end of the range of γ in the table's subject that its axis does not cover.
     fn uncovered(&self) -> Option<f64> {
         let of_shape =
             |axis: &&Axis| matches!(axis.mapping, Mapping::InverseShape | Mapping::LogShape(_));
@@ -132,8 +132,8 @@ impl Table {
         if expected != Some(self.values.len()) {
             return fail(format!("{} values for shape {:?}", self.values.len(), self.shape()));
         }
-        // Without an early exit these loops run four values at a time: they take half of the time
-        // that loading the default set takes.
+        // Without an early exit both checks of values are vectorised, four values at a time: they
+        // take half of the time of loading the default set.
         if !self.values.iter().fold(true, |sound, x| sound & x.is_finite()) {
             return fail("a value is not finite".into());
         }
