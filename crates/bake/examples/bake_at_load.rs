@@ -1,4 +1,4 @@
-//! A renderer that bakes when it loads a scene: materials in, tables in memory, no file in between.
+//! A renderer that bakes when it loads a scene, without a file of tables.
 //!
 //! `cargo run --release -p microfacet-baker --example bake_at_load` bakes what the embedded set
 //! lacks, albedos of brushed gold and of frosted glass, joins them with the embedded set, and
@@ -32,7 +32,8 @@ fresnel = { dielectric = 1.5 }
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let start = Instant::now();
     let scene = Scene::from_recipe_str(MATERIALS)?;
-    // The sampler crate contains tables of every sigma and gamma: only what they lack is baked.
+    // The embedded tables of the sampler crate serve every sigma and gamma; only what they lack is
+    // baked.
     let options = Options { embedded: true, embedded_albedo: true, ..Options::default() };
     let plan = Plan::new(&scene, options)?;
     // Kept in the user's cache folder, so the next run finds it there.

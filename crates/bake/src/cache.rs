@@ -1,4 +1,4 @@
-//! A cache of finished tables, under the content of what they were baked from.
+//! A cache of finished tables, by the content of their specification.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -24,7 +24,7 @@ pub struct Cache {
     folder: Option<PathBuf>,
     /// Whether an entry was written.
     kept: Arc<AtomicBool>,
-    /// Whether what others left half written was looked for.
+    /// Whether incomplete files of killed processes were looked for.
     tidied: Arc<AtomicBool>,
 }
 
@@ -57,23 +57,23 @@ impl Cache {
         self.folder.as_deref()
     }
 
-    /// Whether this cache or a clone of it has kept any tables, to be read at any time.
+    /// Whether this cache or a clone of it has kept any tables; may be read at any time.
     pub fn kept(&self) -> Arc<AtomicBool> {
         self.kept.clone()
     }
 
-    /// The tables kept under a key. Whether they are those that it means is for the caller to
-    /// compare, who knows what was asked for.
+    /// The tables kept under a key. The caller has to check that they are those that the key
+    /// describes: the file may hold any.
     pub fn get(&self, key: &str) -> Option<Vec<Table>> {
         let key = complete(key);
         let set = store::read_file(&self.path(&key)?).ok()?;
-        // The entry holds its key: a file of this name with another key does not count.
+        // A file of this name may hold the entry of another key.
         let Provenance { key: of, numerics, .. } = set.provenance();
         (*of == key && *numerics == NUMERICS).then(|| set.tables().to_vec())
     }
 
-    /// Keeps tables under a key. The first call of a cache or its clones removes what bakes that
-    /// were killed have left half written.
+    /// Keeps tables under a key. The first call of a cache or its clones also removes incomplete
+    /// files of bakes that were killed.
     ///
     /// # Errors
     /// Any error of the operating system, such as a folder that cannot be written.
@@ -84,7 +84,7 @@ impl Cache {
         let provenance = Provenance { key, numerics: NUMERICS, ..Provenance::default() };
         let bytes = encode(&provenance, tables).map_err(io::Error::other)?;
         write_in(folder, &name, &bytes)?;
-        // It lists the folder, which may hold very many entries.
+        // Only once, since it lists the folder, which may hold very many entries.
         if !self.tidied.swap(true, Relaxed) {
             remove_abandoned(folder);
         }
@@ -92,10 +92,10 @@ impl Cache {
         Ok(())
     }
 
-    /// Removes what is kept under a key.
+    /// Removes the entry of a key, if there is one.
     pub fn remove(&self, key: &str) {
         if let Some(path) = self.path(&complete(key)) {
-            // A file that is gone already is no error.
+            // The file may be gone already.
             let _ = std::fs::remove_file(path);
         }
     }
@@ -105,10 +105,10 @@ impl Cache {
     }
 }
 
-/// A key with everything that its meaning depends on: versions, and the coordinates, whose formulas
-/// and constants a specification does not name.
+/// A key with all that tables depend on: versions, and the formulas and constants of coordinates,
+/// which a specification does not name.
 pub(crate) fn complete(key: &str) -> String {
-    // Longer than most keys, and the same for all.
+    // Made once, since it is longer than most keys.
     static HEAD: LazyLock<String> = LazyLock::new(|| {
         let mappings = Mapping::EVERY.map(|mapping| (mapping, mapping.formula()));
         format!("{}, {mappings:?}\n", versions())
@@ -116,7 +116,6 @@ pub(crate) fn complete(key: &str) -> String {
     [HEAD.as_str(), key].concat()
 }
 
-/// The name of the entry of a complete key.
 fn name_of(key: &str) -> String {
     sha256(key) + ".safetensors"
 }
@@ -131,12 +130,11 @@ pub(crate) fn write_in(folder: &Path, name: &str, bytes: &[u8]) -> io::Result<()
     in_folder(folder, || replace(&path, bytes)).map_err(|why| at(&path, why))
 }
 
-/// The SHA-256 of a text, in hexadecimal.
+/// In hexadecimal.
 pub(crate) fn sha256(text: &str) -> String {
     Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The versions that tables depend on.
 pub(crate) fn versions() -> String {
     let program = env!("CARGO_PKG_VERSION");
     format!("format {VERSION}, numerics {NUMERICS}, program {program}")

@@ -11,7 +11,7 @@ use microfacet_model::classic::{
 
 use crate::input::angles::Angles;
 
-/// The largest s = 1/(γ−1) that is searched: γ = 1.5025.
+/// The largest s = 1/(γ−1) of a search: γ = 1.5025.
 pub const S_MAX: f64 = 1.99;
 
 /// A named distribution of one or two parameters.
@@ -95,7 +95,7 @@ impl Distribution {
     }
 }
 
-/// What comes before the name of the file in a label.
+/// The prefix of the label of a measured distribution.
 const fn measured(angles: Angles) -> &'static str {
     match angles {
         Angles::Radians => "measured",
@@ -254,8 +254,8 @@ impl DistributionKind {
         }
     }
 
-    /// The parameters that a search ended with at an end of [`at`](Self::at), apart from the limit
-    /// γ = ∞.
+    /// The names of the parameters that are at an end of the range of [`at`](Self::at), except the
+    /// limit γ = ∞.
     pub fn ends_at(self, point: &[f64]) -> Vec<&'static str> {
         let at_end = |y: f64| !(1e-4..=1.0 - 1e-4).contains(&y);
         let is_limit = |i: usize| self == Self::StudentT && i == 1 && point[i] < 0.5;
@@ -294,7 +294,7 @@ impl FromStr for Named {
 
 impl fmt::Display for Named {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Six places, or six digits of what would lose them so.
+        // Six decimal places, or six significant digits where that would lose some.
         let number = |x: &f64| match x.abs() {
             1e-2..1e9 | 0.0 | f64::INFINITY => format!("{x:.6}"),
             _ => format!("{x:.5e}"),

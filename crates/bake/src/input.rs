@@ -1,7 +1,5 @@
-//! Opens what a user names for reading: regular files only, of a limited size.
-//!
-//! A FIFO would hang, a device never ends, and a file of many gigabytes may hold nothing but zeros.
-//! So every file is looked at before it is opened, and read to a limit.
+//! Opens files that a user names: regular files only, of a limited size. Every file is checked
+//! before it is opened, since a FIFO would hang and a device may never end.
 
 pub mod angles;
 pub mod normals;
@@ -13,10 +11,9 @@ use std::path::Path;
 
 /// Largest table file or image, 256 MiB: decoding may need two more times as much.
 pub const MAX_TABLES: u64 = 256 << 20;
-/// Largest text of measured data, and of a description in an image or a hidden file of ours.
-/// Scenes have limits of their own.
+/// Largest text, such as measured data or an index, 64 MiB. Scenes have limits of their own.
 pub const MAX_TEXT: u64 = 64 << 20;
-/// Largest row of a CSV, which may have fields of several lines in quotes.
+/// Largest row of a CSV, 1 MiB. A row may have quoted fields of several lines.
 pub const MAX_ROW: u64 = 1 << 20;
 
 /// Opens a regular file of at most `limit` bytes.
@@ -27,7 +24,7 @@ pub const MAX_ROW: u64 = 1 << 20;
 pub fn open(path: &Path, limit: u64) -> io::Result<File> {
     regular(&std::fs::metadata(path)?, limit)?;
     let file = File::open(path)?;
-    // Another program may have replaced it meanwhile.
+    // Another program may have replaced the file meanwhile.
     regular(&file.metadata()?, limit)?;
     Ok(file)
 }
@@ -59,7 +56,7 @@ pub fn open_or_stdin(path: &Path, limit: u64) -> io::Result<Box<dyn Read>> {
     }
     match open(path, limit) {
         Ok(file) => Ok(Box::new(Limited::new(file, limit))),
-        // A pipe may hang: it is read where it was asked for.
+        // A pipe may hang, so it is read only as standard input.
         Err(why) if std::fs::metadata(path).is_ok_and(|found| !found.is_file()) => {
             Err(io::Error::new(why.kind(), format!("{why}, or `-` for standard input")))
         }
@@ -72,7 +69,7 @@ pub fn shown(path: &Path) -> std::path::Display<'_> {
     if path.as_os_str() == "-" { Path::new("standard input").display() } else { path.display() }
 }
 
-/// A stream that fails where it goes on beyond a limit.
+/// A stream whose reading fails beyond a limit of bytes.
 #[derive(Debug)]
 pub struct Limited<R> {
     input: R,
@@ -81,12 +78,12 @@ pub struct Limited<R> {
 }
 
 impl<R> Limited<R> {
-    /// Allows `limit` bytes of a stream.
+    /// Allows `limit` bytes of `input`.
     pub fn new(input: R, limit: u64) -> Self {
         Self { input, limit, left: limit }
     }
 
-    /// Allows as many bytes again: a row has ended.
+    /// Allows as many bytes again, at the end of a row.
     pub fn restart(&mut self) {
         self.left = self.limit;
     }
@@ -106,7 +103,7 @@ impl<R: Read> Read for Limited<R> {
     }
 }
 
-/// What a path names, in words.
+/// The kind of a file in words.
 pub(crate) fn name(kind: std::fs::FileType) -> &'static str {
     #[cfg(unix)]
     {
@@ -145,7 +142,7 @@ pub fn read_text(path: &Path, limit: u64) -> io::Result<String> {
     text.map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "is no text in UTF-8"))
 }
 
-/// The byte order mark that some editors write before UTF-8; it is no part of the text.
+/// The byte order mark that some editors write before UTF-8.
 const MARK: &[u8] = "\u{feff}".as_bytes();
 
 /// A text without its byte order mark.
@@ -153,10 +150,9 @@ pub fn unmarked(text: &[u8]) -> &[u8] {
     text.strip_prefix(MARK).unwrap_or(text)
 }
 
-/// A stream of text without its byte order mark.
 pub(crate) type Unmarked<R> = io::Chain<io::Cursor<Vec<u8>>, R>;
 
-/// A stream of text without its byte order mark; its first bytes are read at once, or its error.
+/// A stream of text without its byte order mark. Its first bytes are read by this call.
 pub fn unmarked_stream<R: Read>(mut input: R) -> io::Result<Unmarked<R>> {
     let mut first = Vec::new();
     input.by_ref().take(MARK.len() as u64).read_to_end(&mut first)?;
@@ -184,7 +180,7 @@ mod tests {
             assert!(message.contains("character device"), "{message}");
             let message = open_or_stdin(Path::new("/dev/zero"), 10).err().unwrap().to_string();
             assert!(message.contains("`-` for standard input"), "{message}");
-            // It reports no size.
+            // A file that reports no size.
             let message = read(Path::new("/proc/self/maps"), 10).unwrap_err().to_string();
             assert!(message.contains("too long"), "{message}");
         }

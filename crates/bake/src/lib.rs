@@ -1,10 +1,10 @@
 //! Bakes certified tables of microfacet materials: for a scene, for a library of materials, or in a
 //! renderer at load.
 //!
-//! Data flows one way. A [`scene`] or recipe says what its materials are, a [`plan`] what they need
-//! tabulated, and [`table_set::bake`] makes the certified set: it takes nodes from [`table_spec`],
-//! values from [`mod@bake`] and errors from [`certify`]. [`store`] writes the set, or a renderer
-//! keeps it in memory and reads it with [`microfacet_sampler`].
+//! Data flows one way. A [`scene`] or recipe lists materials, a [`plan`] the tables that they need,
+//! and [`table_set::bake`] makes the certified set, with nodes from [`table_spec`], values from
+//! [`mod@bake`] and errors from [`certify`]. [`store`] writes the set, or a renderer keeps it in
+//! memory and reads it with [`microfacet_sampler`].
 //!
 //! # Bake at load
 //!
@@ -28,13 +28,13 @@
 //! | module | |
 //! | --- | --- |
 //! | [`scene`], [`distribution`] | materials, recipes, and distributions by name |
-//! | [`plan`] | what they need tabulated, what that costs, and what is skipped |
-//! | [`table_spec`], [`mod@bake`] | the nodes of a table, and their values: one file an integrand |
+//! | [`plan`] | the tables that materials need, their cost, and what is skipped |
+//! | [`table_spec`], [`mod@bake`] | the nodes of a table, and their values |
 //! | [`certify`] | the errors of a table between its nodes, which its file states |
 //! | [`table_set`] | from a plan and a [`Target`](table_set::Target) to a certified set |
 //! | [`library`] | many materials in sets, baked by several processes |
-//! | [`store`], [`cache`], [`memory`] | files, what was baked before, and the limit of memory |
-//! | [`input`], [`progress`] | what the rest stands on |
+//! | [`store`], [`cache`], [`memory`] | files of sets, tables kept from earlier bakes, the memory limit |
+//! | [`input`], [`progress`] | reading of files to a limit, and the progress of long work |
 
 pub mod bake;
 pub mod cache;

@@ -1,4 +1,4 @@
-//! Estimates the memory of a bake before any is taken.
+//! Estimates the memory that a bake takes, before it begins.
 
 use crate::bake::albedo::AlbedoSpec;
 
@@ -30,26 +30,25 @@ fn mib(bytes: u128) -> u128 {
     bytes.div_ceil(1 << 20)
 }
 
-/// Numbers of values of some tables: those that are kept until the set is written, and those that
-/// are held only while these tables are made.
+/// Numbers of values of some tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Values {
-    /// Kept with those of all other tables.
+    /// Kept until the set is written.
     pub kept: u128,
-    /// Held beside them while these are made.
+    /// Held in addition while these tables are baked.
     pub making: u128,
 }
 
 impl Values {
-    /// Those of albedo tables: channels of both forms of masking are held in double precision until
-    /// all nodes are done. Some tables are refined, which may double their nodes several times.
+    /// Values of albedo tables: the channels of both forms of masking are held in double precision
+    /// until all nodes are done, and refinement may double the nodes several times.
     pub fn of_albedo(spec: &AlbedoSpec) -> Self {
         let kept = (spec.bytes().div_ceil(spec.precision.bytes()) as u128) << spec.doublings();
         let all = (8 * spec.nodes() as u128) << spec.doublings();
         Self { kept, making: all.saturating_sub(kept) }
     }
 
-    /// Those of tables that are made as fast as they are kept.
+    /// Values of tables whose bake holds nothing in addition.
     pub fn kept(kept: u128) -> Self {
         Self { kept, making: 0 }
     }

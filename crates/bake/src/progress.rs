@@ -1,16 +1,15 @@
-//! Progress of long work: how much is known to be ahead, and how much is done.
+//! Progress of long work.
 //!
-//! What starts some work calls [`Meter::expect`] for all of it, so that the share done is a share
-//! of the whole, and hands each function a [`Stage`]. The function splits its stage into equal
-//! parts, such as nodes or places, and counts them from any thread. Another thread may
-//! [read](Meter::share) the meter at any time. Work has any unit, by which kinds of parts are
-//! weighed against each other, such as planned seconds.
+//! The caller announces all work by [`Meter::expect`], so that the share done is a share of the
+//! whole, and gives each function a [`Stage`]. The function splits its stage into equal steps, such
+//! as nodes or points, and counts them from any thread. Another thread may [read](Meter::share) the
+//! meter at any time. Work has any unit that is the same for all stages, such as planned seconds.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::time::Duration;
 
-/// Work ahead and work done; clones count the same work.
+/// Counts of the work that was announced and of the work done; clones share them.
 #[derive(Clone, Debug, Default)]
 pub struct Meter(Arc<Counts>);
 
@@ -21,40 +20,40 @@ struct Counts {
     done: AtomicU64,
 }
 
-/// Shares below this say little about the rest: a stage's first parts may be unlike the others.
+/// Share below which no remaining time is estimated: the first steps may differ from the others.
 const FIRST: f64 = 0.01;
 
 impl Meter {
-    /// Adds work that lies ahead.
+    /// Announces work.
     pub fn expect(&self, work: f64) {
         self.0.known.fetch_add(counted(work), Relaxed);
     }
 
-    /// Takes back work that was expected and need not be done: it was found in a cache.
+    /// Takes back announced work that need not be done, such as tables found in a cache.
     pub fn forget(&self, work: f64) {
         let less = |known: u64| Some(known.saturating_sub(counted(work)));
         let _ = self.0.known.fetch_update(Relaxed, Relaxed, less);
     }
 
-    /// Begins a part of the work that was expected.
+    /// Begins a stage of the announced work.
     pub fn stage(&self, work: f64) -> Stage {
         let total = counted(work);
         Stage { meter: self.clone(), total, parts: AtomicU64::new(1), counted: AtomicU64::new(0) }
     }
 
-    /// Whether any work is known to be ahead or done.
+    /// Whether any work was announced.
     pub fn is_known(&self) -> bool {
         self.0.known.load(Relaxed) > 0
     }
 
-    /// The share of the known work that is done, in [0, 1]; 0 if none is known.
+    /// The share of the announced work that is done, in [0, 1]; 0 if none was announced.
     pub fn share(&self) -> f64 {
         let (done, known) = (self.0.done.load(Relaxed), self.0.known.load(Relaxed));
         if known == 0 { 0.0 } else { (done as f64 / known as f64).min(1.0) }
     }
 
-    /// The time left after `elapsed`, if the rest goes on as the work so far; `None` while too
-    /// little is done to tell.
+    /// The time left after `elapsed` at the average speed so far; `None` while too little is done
+    /// to tell.
     pub fn left(&self, elapsed: Duration) -> Option<Duration> {
         let share = self.share();
         (share >= FIRST).then(|| elapsed.mul_f64((1.0 - share) / share))
@@ -66,7 +65,7 @@ fn counted(work: f64) -> u64 {
     (1e9 * work) as u64
 }
 
-/// A part of the work: counted in equal parts, and done as a whole when it is dropped.
+/// A stage of the work, counted in equal steps; when it is dropped, all of it counts as done.
 #[derive(Debug)]
 pub struct Stage {
     meter: Meter,
@@ -81,18 +80,18 @@ impl Stage {
         Meter::default().stage(0.0)
     }
 
-    /// Says of how many equal parts the work is, before any is done. More may then be counted, or
-    /// fewer: the whole stays what was expected.
+    /// Sets the number of equal steps, before any is done. If more or fewer are counted, the work
+    /// of the whole stage stays the same.
     pub fn split(&self, parts: usize) {
         self.parts.store((parts as u64).max(1), Relaxed);
     }
 
-    /// Counts one part as done.
+    /// Counts one step as done.
     pub fn step(&self) {
         self.steps(1);
     }
 
-    /// Counts some parts as done.
+    /// Counts some steps as done.
     pub fn steps(&self, count: usize) {
         let before = self.counted.fetch_add(count as u64, Relaxed);
         self.count(before, before + count as u64);
@@ -127,7 +126,7 @@ mod tests {
             stage.split(3);
             stage.step();
             is_at(0.25 / 3.0);
-            // More parts than were announced.
+            // More steps than were announced.
             stage.steps(7);
             is_at(0.25);
         }
@@ -137,7 +136,7 @@ mod tests {
         is_at(0.5);
         meter.forget(5.0);
         assert_eq!(meter.share(), 1.0);
-        // Nothing that was estimated wrongly leads out of [0, 1].
+        // Wrong estimates leave the share in [0, 1].
         meter.forget(f64::INFINITY);
         meter.expect(f64::NAN);
         drop(meter.stage(1.0));

@@ -15,12 +15,12 @@ pub enum Quality {
     High,
 }
 
-/// A place on the scale of qualities, in sixteenths of the step from one to the next:
+/// A level on the scale of qualities, in sixteenths of the step from one to the next:
 /// [`Quality::Draft`] is level 0, [`Quality::Default`] 16 and [`Quality::High`] 32.
 ///
 /// The numbers of nodes of the qualities were found by measuring; those of a level between two
-/// qualities are geometric means, and beyond them they continue with the same ratio. So the axes of
-/// a table stay in balance, and one number says how fine it is.
+/// qualities are geometric means, and beyond them they continue with the same ratio, so that the
+/// axes of a table stay in balance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Level(pub i32);
 
@@ -60,8 +60,7 @@ impl Level {
         }
     }
 
-    /// Numbers of nodes of the family's tables; those of the qualities were each found by
-    /// measuring.
+    /// Numbers of nodes of the family's tables.
     pub fn resolution(self) -> Resolution {
         Resolution {
             shapes: self.nodes([9, 21, 33], 5),
@@ -70,7 +69,7 @@ impl Level {
             across_shapes: self.nodes([17, 33, 65], 5),
             shadowing_views: self.nodes([65, 97, 193], 9),
             peeled_shadowing_views: self.nodes([97, 161, 321], 9),
-            // Knots of the axis are at eighths.
+            // A multiple of eight cells, since knots of the axis are at eighths.
             views: self.nodes([24, 88, 320], 8).next_multiple_of(8) + 1,
             numbers: self.nodes([11, 21, 37], 5),
             across_numbers: self.nodes([17, 33, 65], 5),
@@ -97,8 +96,8 @@ pub struct Resolution {
     pub across_shapes: usize,
     /// View nodes of the shadowing table where the whole distribution is tabulated.
     pub shadowing_views: usize,
-    /// And where the heavy part is peeled: lobes next to γ = 3/2 have most of them beyond the views
-    /// where masking bends.
+    /// View nodes of the shadowing table where the heavy part is peeled: more of them, since for
+    /// lobes next to γ = 3/2 most lie beyond the views at which masking changes.
     pub peeled_shadowing_views: usize,
     /// View nodes of the slope tables.
     pub views: usize,

@@ -1,4 +1,4 @@
-//! Table specifications: what is to be baked, as pure data.
+//! Specifications of the tables to bake.
 
 use microfacet_core::shape::s_of_gamma;
 use microfacet_tables::axis::lagrange::nodes_read;
@@ -38,7 +38,7 @@ impl ShapeAxis {
         [self.nodes[0], self.nodes[self.nodes.len() - 1]]
     }
 
-    /// The part of a range that interpolation in [from, to] reads.
+    /// The nodes of a range that interpolation in [from, to] reads.
     #[must_use]
     pub fn part(&self, from: f64, to: f64) -> Self {
         let nodes = nodes_read(&self.nodes, from, to, self.interpolation.window()).to_vec();
@@ -117,8 +117,8 @@ pub fn general_set(level: impl Into<Level>, precision: Precision) -> Vec<TableSp
         numbers,
         precision,
     };
-    // Shapes crowd: G1 changes with the logarithm of 2 − s next to γ = 3/2, and the slopes of
-    // grazing views next to the seam, where even nodes in s leave most of the error.
+    // Crowded shapes: next to γ = 3/2 G1 changes with the logarithm of 2 − s, and next to the seam
+    // the slopes of grazing views change fast; even nodes in s leave most of the error there.
     let (range, crowded) = (ShapeAxis::range, ShapeAxis::crowded);
     let peeled = crowded(whole, heaviest, r.shadowing_shapes, 2.0);
     let peeled = spec(Kind::Shadowing, peeled, r.peeled_shadowing_views, 0);

@@ -23,8 +23,7 @@ pub(super) fn bake(spec: &TableSpec, axes: &[Axis], stage: &Stage) -> Vec<f32> {
     shapes(spec).par_iter().flat_map_iter(of_shape).flatten_iter().collect()
 }
 
-/// A node of the half u > ½: the distance of the half tangent from 1, and its derivative by t, per
-/// node.
+/// A node of the half u > ½: the distance of the half tangent from 1, and its derivative per node.
 fn node(shape: &Shape, t: f64, cells: usize) -> [f64; 2] {
     let (u, du_dt) = mirrored(t);
     let x = across_quantile(shape, 1.0 - u);

@@ -1,4 +1,4 @@
-//! Bakes tables from specifications: pure functions, one file a kind, parallel over γ and view.
+//! Bakes tables from specifications, in parallel over γ and view.
 //!
 //! Values are computed in f64 with the functions of the `libm` crate and rounded to f32 once, at
 //! the end: the bytes are the same on every system, with any number of threads and in every build.
@@ -27,7 +27,7 @@ pub const NUMERICS: u32 = 10;
 /// 2⁻⁴⁰. For Beckmann it keeps every stored slope below 5.3; the CDF error it causes is 2⁻⁴⁰ too.
 const END: f64 = 1.0 / 1_099_511_627_776.0;
 
-/// Bakes one table, and counts its rows in a stage of the progress.
+/// Bakes one table; each row is one step of the stage.
 pub fn bake(spec: &TableSpec, stage: &Stage) -> Table {
     let axes = axes(spec);
     let values = match spec.kind {
@@ -76,12 +76,10 @@ fn across(count: usize) -> Axis {
     Axis::placed("u2", Mapping::OddRoot, Interpolation::Hermite, count)
 }
 
-/// Channel names as tables hold them.
 fn names(channels: Channels) -> Vec<String> {
     channels.iter().map(|&name| name.into()).collect()
 }
 
-/// The shapes along the γ axis.
 fn shapes(spec: &TableSpec) -> Vec<Shape> {
     let shape = |&s: &f64| Shape::from_s(s).expect("specifications hold s in [0, 2)");
     spec.shapes.nodes.iter().map(shape).collect()

@@ -17,7 +17,7 @@ use super::{across, along, mirrored, names, round};
 use crate::progress::Stage;
 use crate::table_spec::Level;
 
-/// Rows, one for each in-plane slope, of the table of slopes across.
+/// Number of in-plane slopes, the rows of the table of slopes across.
 const SLOPES: usize = 193;
 /// Nodes of the table of D.
 const DENSITIES: usize = 257;
@@ -26,8 +26,8 @@ const DENSITIES: usize = 257;
 /// and whose largest slope is `reach`.
 pub fn radial_axes(level: Level, kappa: f64, reach: f64) -> [(Kind, Vec<Axis>); 4] {
     let r = level.resolution();
-    // Twice as fine as the family's: any distribution may have kinks and several scales, and there
-    // is one slice only.
+    // Twice as fine as the family's: a distribution may have kinks and several scales, and its
+    // tables have one shape only.
     let [along_numbers, across_numbers] = [r.numbers, r.across_numbers].map(|n| 2 * n - 1);
     let slopes = match reach {
         reach if reach.is_finite() => rational(reach),
@@ -54,7 +54,7 @@ fn rational(kappa: f64) -> Mapping {
     Mapping::Rational(Rational { scale: kappa, crowded: false })
 }
 
-/// What the tables of the distribution with a label are of.
+/// The subject of the tables of the distribution with this label.
 pub(crate) fn radial_subject(label: &str) -> Subject {
     Subject::of(LobeSpec::outside(label.into()))
 }
@@ -68,8 +68,8 @@ pub fn radial_bytes(level: Level, precision: Precision) -> usize {
     radial_axes(level, 1.0, f64::INFINITY).iter().map(values).sum::<usize>() * precision.bytes()
 }
 
-/// The four tables of the distribution named by a label; counts their rows in a stage of the
-/// progress.
+/// The four tables of the distribution with this label; each row of two of them is one step of the
+/// stage.
 pub fn bake_radial(
     marginal: &Marginal,
     label: &str,
@@ -107,7 +107,7 @@ pub fn bake_radial(
     all.into_iter().map(table).collect()
 }
 
-/// G1/q with q = z/(z + κ), where κ is the projected area at grazing, as for the family.
+/// G1/q with q = z/(z + κ), where κ is the projected area at grazing.
 fn shadowing(marginal: &Marginal, kappa: f64, views: &[f64]) -> Vec<[f32; 2]> {
     let beyond = |z: f64| {
         let at = marginal.beyond(z);
@@ -116,11 +116,11 @@ fn shadowing(marginal: &Marginal, kappa: f64, views: &[f64]) -> Vec<[f32; 2]> {
     round(ratios(&Rational { scale: kappa, crowded: false }, kappa, views, beyond))
 }
 
-/// Finds the distance g ∈ (0, 2) from an end at which `share`, which rises with g, equals `u`, from
-/// a first guess.
+/// Finds the distance g ∈ (0, 2) from an end at which `share`, which rises with g and is returned
+/// with its derivative, equals `u`.
 ///
-/// `share` also returns its derivative. Newton's method on the logarithms of both, since the share
-/// is nearly a power of g; where a step leaves the bracket, the bracket is halved instead.
+/// Newton's method on the logarithms of share and g, since the share is nearly a power of g; where
+/// a step leaves the bracket, the bracket is halved instead.
 fn solve(u: f64, guess: f64, share: impl Fn(f64) -> (f64, f64)) -> f64 {
     let (mut low, mut high, mut g) = (0.0, 2.0, guess);
     for _ in 0..80 {
@@ -132,7 +132,7 @@ fn solve(u: f64, guess: f64, share: impl Fn(f64) -> (f64, f64)) -> f64 {
         }
         let step = g * libm::exp(value / (rate * g) * libm::log(u / value));
         let next = if step > low && step < high { step } else { 0.5 * (low + high) };
-        // A tenth of the last stored bit.
+        // About a hundredth of the last stored bit.
         if (next - g).abs() < 1e-9 * g || high - low < 1e-14 {
             return next;
         }
@@ -156,7 +156,7 @@ fn half_row(numbers: &[f64], share: impl Fn(f64) -> (f64, f64)) -> Vec<[f32; 2]>
         let (u, du_dt) = mirrored(t);
         g = solve(u, g, &share);
         let slope = du_dt / share(g).1 / cells;
-        // At the end of a support it is infinite; `limit_slopes` bounds it.
+        // The slope is infinite at the end of a support; `limit_slopes` bounds it.
         [g, if slope.is_finite() { slope } else { f64::from(f32::MAX) }]
     }))
 }
@@ -173,7 +173,7 @@ fn in_plane(marginal: &Marginal, views: &[f64], numbers: &[f64], stage: &Stage) 
                 (if sign < 0.0 { at.below } else { at.above }, at.density / rate(x, 1.0))
             });
             if sign < 0.0 && tau < 1.0 && z <= marginal.reach() {
-                // The silhouette in closed form, as in the family's tables.
+                // The silhouette in closed form.
                 half[0][0] = SLOPE.parts(tau)[1] as f32;
             }
             limit_slopes(&mut half);
@@ -192,8 +192,8 @@ fn given_slope(
     stage: &Stage,
 ) -> Vec<[f32; 2]> {
     let row = |&at: &f64| {
-        // A row at infinity, or at or beyond the bound R of the slopes, has no quadrature; a row
-        // just before it is close to the limit.
+        // There is no quadrature for a row at infinity, or at or beyond the bound R of the slopes:
+        // a row just before it is close to the limit.
         let (x, scale) = match slopes.mapping {
             Mapping::Rational(axis) => {
                 let part = axis.quantity(at, 1.0).min(1.0 - 1e-6);
@@ -231,8 +231,7 @@ fn density(marginal: &Marginal, slopes: &[f64]) -> Vec<[f32; 2]> {
         [root(h), (b - a) / width / cells]
     };
     let mut nodes: Vec<[f64; 2]> = slopes.iter().map(node).collect();
-    // Falls to 0, and ever faster. What is only noisy there keeps its values, as does what has
-    // fallen before and is flat.
+    // D falls to 0, ever faster. Noisy values are kept, as are values that are small and flat.
     if let [.., [before, _], last] = &mut nodes[..]
         && last[0] < 0.1 * *before
         && last[1].abs() > 3.0 * (last[0] - *before).abs()
@@ -242,12 +241,12 @@ fn density(marginal: &Marginal, slopes: &[f64]) -> Vec<[f32; 2]> {
     round(nodes)
 }
 
-/// Value and slope per cell of the last node, in parts of the value before it, where D falls to 0
+/// Value and slope per cell of the last node, relative to the value before it, where D falls to 0
 /// at the horizon.
 ///
-/// There D^¼ is a fourth root of the distance, whose slope at the end is infinite: taken as it is,
-/// the cell would swing to some 1e6 D(0). These leave an error of less than 0.04 of D at the
-/// node before, as the test below has it.
+/// There D^¼ is a fourth root of the distance from the horizon, whose slope is infinite at the end:
+/// with that slope the cell would swing to some 1e6 D(0). These values leave an error of less than
+/// 0.04 of D at the node before.
 const FADING: [f64; 2] = [0.41, -1.4];
 
 #[cfg(test)]
@@ -262,7 +261,7 @@ mod tests {
         (0..DENSITIES).map(|i| i as f64 / (DENSITIES - 1) as f64).collect()
     }
 
-    /// The last cell of the table of D, against D itself, in parts of D at its inner node.
+    /// The largest error in the last cell of the table of D, relative to D at its inner node.
     fn error_in_the_last_cell(d: &dyn Isotropic) -> f64 {
         let marginal = Marginal::new(d);
         let nodes = nodes();

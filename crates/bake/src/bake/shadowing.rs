@@ -1,8 +1,7 @@
 //! Smith's G1, stored as the ratio G1/q to a rational function q with the same limits.
 //!
-//! With q of [`Rational::BAKED`] the ratio stays within [0.75, 1.6] over the whole domain: q takes
-//! up the zero at grazing, the limit at normal incidence, and the divergence of the projected area
-//! at γ → 3/2. So G1 has a small *relative* error at grazing, where it is divided by cos θ.
+//! With q of [`Rational::BAKED`] the ratio stays within [0.75, 1.6] over the whole domain, so G1
+//! has a small *relative* error at grazing, where it is divided by cos θ.
 
 use rayon::prelude::*;
 
@@ -49,17 +48,17 @@ pub(super) fn ratios(
     let node = |t: f64| {
         let z = view.quantity(t, kappa);
         let (excess, tail) = beyond(z);
-        // Both sums are divided by √(1 + z²), since z itself may overflow.
+        // Numerator and denominator are divided by √(1 + z²), since z may overflow.
         let UnitView { sin, cos } = UnitView::from_cotangent(z);
         let value = (cos + kappa * sin) / (cos + excess * sin);
-        // d/dz of the area is 1 − Q(z); times dz/dq = (z+κ)²/κ the quotient rule gives this, finite
-        // for z → ∞.
+        // The derivative of the area by z is 1 − P(X > z). With dz/dq = (z+κ)²/κ the quotient rule
+        // gives this form, which is finite for z → ∞.
         let slope = (excess - kappa + (z + kappa) * tail) * value * value / kappa;
         [value, slope * view.rate(t) / cells]
     };
     let mut nodes: Vec<_> = views[..views.len() - 1].par_iter().map(|&t| node(t)).collect();
-    // z = ∞, where G1 = 1. Near γ = 3/2 the excess falls like z^(−2k), so the derivative there says
-    // nothing about the cell; this slope makes the cubic meet the ratio in the cell's middle.
+    // z = ∞, where G1 = 1. Near γ = 3/2 the excess falls like z^(−2k), so the derivative at z = ∞
+    // says nothing about the cell; this slope makes the cubic meet the ratio in the cell's middle.
     let ([before, slope], [middle, _]) = (nodes[views.len() - 2], node(1.0 - 0.5 / cells));
     nodes.push([1.0, slope - 8.0 * (middle - 0.5 * (before + 1.0))]);
     nodes

@@ -1,10 +1,10 @@
 //! The inverse CDF of the in-plane slope of visible normals, over view and u₁.
 //!
 //! A node holds the distance g of the half tangent h = x/(1 + √(1+x²)) of the unit slope from the
-//! end of its half, g = 1 + h for u ≤ ½ and 1 − h above, and the exact derivative. The largest CDF
-//! error between the nodes, for several designs of 65 views by 2·17 random numbers with cubic
-//! Hermite interpolation along u and linear interpolation between views, as `cargo run --release
-//! -p microfacet-study -- table_design` prints it:
+//! end of its half, g = 1 + h for u ≤ ½ and 1 − h above, and the exact derivative.
+//! `cargo run --release -p microfacet-study -- table_design` prints the largest CDF error between
+//! the nodes for several designs of 65 views by 2·17 random numbers, with cubic Hermite
+//! interpolation along u and linear interpolation between views:
 //!
 //! | stored | view axis | u | γ = 1.8 | 2 | 4 | ∞ |
 //! | --- | --- | --- | --- | --- | --- | --- |
@@ -19,8 +19,8 @@
 //!
 //! Storing the random number of a GGX sampler is as accurate, and exact at γ = 2, but costs a
 //! rotation and two square roots more at run time. The half tangent has the silhouette x = −cot θ
-//! at h = −τ, linear in the view coordinate τ, so that no interpolated slope faces away; and
-//! measured from its ends it keeps its digits in both tails.
+//! at h = −τ, linear in the view coordinate τ, so that no interpolated slope faces away from the
+//! view; stored as a distance from an end, it keeps its digits in both tails.
 
 use rayon::prelude::*;
 
@@ -34,9 +34,9 @@ use crate::progress::Stage;
 use crate::table_spec::TableSpec;
 
 /// The view axis, with more nodes towards normal incidence: there the slopes depend on the tilt η
-/// like η^(2γ−2), whose second derivative is infinite for γ < 2. The knots are at eighths, so that
-/// they are nodes, and the best of a coarse grid. The largest CDF error of linear interpolation
-/// between 89 exact views, as the command above prints it too:
+/// like η^(2γ−2), whose second derivative is infinite for γ < 2. The knots are the best of a coarse
+/// grid, and at eighths, so that they are nodes. The largest CDF error of linear interpolation
+/// between 89 exact views, as `table_design` prints it:
 ///
 /// | nodes | γ = 1.8 | 1.9 | 4 | ∞ | peeled: 1.501 | 1.51 | 1.6 | 1.79 |
 /// | --- | --- | --- | --- | --- | --- | --- | --- | --- |
@@ -78,8 +78,8 @@ fn row_nodes(shape: &Shape, [rest, z]: [f64; 2], numbers: &[f64], peeled: bool) 
         let mut half =
             round(numbers.iter().map(|&t| node(shape, &slopes, end, t, numbers.len() - 1)));
         if end < 0.0 && z.is_finite() {
-            // The silhouette in closed form: it is linear in τ, so that interpolation between rows
-            // meets it too, and no sampled normal faces away.
+            // The silhouette in closed form. It is linear in τ, so that interpolation between rows
+            // meets it too, and no sampled normal faces away from the view.
             half[0][0] = (rest + INSIDE) as f32;
         }
         limit_slopes(&mut half);
@@ -88,7 +88,7 @@ fn row_nodes(shape: &Shape, [rest, z]: [f64; 2], numbers: &[f64], peeled: bool) 
     row
 }
 
-/// Distance of the half tangent from the end at t, and its derivative by t, per node.
+/// Distance of the half tangent from the end at t, and its derivative per node.
 fn node(shape: &Shape, slopes: &VisibleSlope, end: f64, t: f64, cells: usize) -> [f64; 2] {
     let (u, du_dt) = mirrored(t);
     let x = slopes.quantile(if end < 0.0 { u } else { 1.0 - u });

@@ -1,6 +1,5 @@
-//! The certificate of albedo tables for any lobe and reflectance: errors between nodes, through the
-//! run-time lookup, against the model's quadrature, at the places that [`points`](super::points)
-//! lists.
+//! The certificate of albedo tables for any lobe and reflectance: errors of the run-time lookup
+//! against the model's quadrature, at the points that [`points`](super::points) lists.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -22,23 +21,23 @@ use crate::progress::Stage;
 
 /// Accuracy of the model's values that tables are compared with, as a multiple of that of a node.
 const FINER: f64 = 0.1;
-/// With a kink of the reflectance a smaller tolerance would take seconds.
+/// Smallest tolerance for a reflectance with a kink: a smaller one would take seconds.
 const FINEST_OF_KINKS: f64 = 1e-6;
 
 /// The model's values for one material and view.
 #[derive(Clone)]
 pub struct Reference {
     point: Point,
-    /// The place after rounding to the sampler's inputs.
+    /// The site after rounding to the sampler's inputs.
     site: Site,
     v: Vec3,
     exact: Albedo<CHANNELS>,
-    /// |E − E of the isotropic lobe that usually stands in|, if there is one, by form of masking.
+    /// |E − E of the isotropic stand-in|, if there is one, by form of masking.
     shortcut: Option<[f64; 2]>,
 }
 
-/// The model's values at the interior places, which do not depend on the number of nodes. Each
-/// place is one step of the stage, here and below.
+/// The model's values at the interior points, which do not depend on the number of nodes. Each
+/// point is one step of the stage.
 ///
 /// # Errors
 /// [`AlbedoError`] for a lobe outside the domain.
@@ -52,14 +51,15 @@ pub fn interior_references(
 }
 
 /// The model's values at corners, in the middle of every cell along every edge, of smooth surfaces,
-/// in the middles of cells over azimuths, and on the crease of a tilted lobe.
+/// in the middles of cells over azimuths, and on the crease of a tilted lobe. Each point is one
+/// step of the stage.
 pub fn edge_references(spec: &AlbedoSpec, stage: &Stage) -> Result<Vec<Reference>, AlbedoError> {
     let points = [edges(spec), smooth(spec), middles(spec), crease(spec)].concat();
     stage.split(points.len());
     references(spec, points, true, stage)
 }
 
-/// The model's values, with those of the lobe that usually stands in if these are asked for.
+/// The model's values, and those of the isotropic stand-in if asked for.
 fn references(
     spec: &AlbedoSpec,
     points: Vec<Point>,
@@ -70,7 +70,7 @@ fn references(
     let finest = if spec.reflectance.indices().is_some() { FINEST_OF_KINKS } else { 0.0 };
     let tolerance = (FINER * spec.tolerance).max(finest);
     let gammas = points.iter().map(|point| point.site.gamma);
-    // Of the family a round lobe stands in, for one that is not.
+    // A round lobe of the family stands in for lobes of the family that are not round.
     let has_stand_in = with_stand_in
         && spec.reflectance == Reflectance::Mirror
         && matches!(spec.lobe.form(), LobeForm::StudentT | LobeForm::Ellipsoid);
@@ -99,9 +99,8 @@ fn references(
     })
 }
 
-/// The tables with their certificates: errors of every quantity that is read, inside the promised
-/// domain and outside, and the error that the isotropic stand-in would have. What the bake said of
-/// the nodes is kept.
+/// The tables with their certificates: errors of every quantity, inside the promised domain and
+/// outside, and the error of the isotropic stand-in. The quadrature error of the bake is kept.
 ///
 /// # Errors
 /// [`AlbedoError`] if a table does not cover its own domain.
@@ -130,7 +129,7 @@ pub fn certified(
     tables.into_iter().map(certified).collect()
 }
 
-/// The errors of all quantities at one place.
+/// The errors of all quantities at one point.
 type At = (Reference, Vec<f64>);
 
 fn directional_certificate(
@@ -155,7 +154,7 @@ fn directional_certificate(
 struct Reader<'a> {
     spec: &'a AlbedoSpec,
     table: &'a Table,
-    /// A table of a single lobe is read once.
+    /// The reading of a table of a single lobe, which serves all points.
     own: Option<Reading>,
 }
 
@@ -188,8 +187,8 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The largest error of any quantity of one table at each of some places; each is a step of the
-/// stage.
+/// The largest error of any quantity of one table at each of some points; each point is one step of
+/// the stage.
 pub fn errors_at(
     spec: &AlbedoSpec,
     table: &Table,
@@ -202,13 +201,13 @@ pub fn errors_at(
     Ok(errors.iter().map(|(_, errors)| largest(errors)).collect())
 }
 
-/// The largest error of any quantity of averages at a place, by the directional table that they
-/// are of; `set` holds the averages alone.
+/// The largest error of any quantity of averages at a site, against the directional table from
+/// which they were integrated; `set` holds only the averages.
 pub fn average_error(set: &Tables, directional: &Table, site: &Site) -> Result<f64, MaterialError> {
     Ok(largest(&average_errors(set, directional, site)?))
 }
 
-/// The largest of some errors; a NaN is the worst.
+/// The largest of some errors; NaN counts as the largest.
 fn largest(errors: &[f64]) -> f64 {
     errors.iter().copied().max_by(f64::total_cmp).unwrap_or(0.0)
 }
@@ -228,29 +227,29 @@ fn average_errors(
 const STEPS: [f64; 6] = [0.3, 0.3, 0.15, 0.15, 0.07, 0.03];
 /// Hills climbed for each quantity with each step.
 const HILLS: [usize; STEPS.len()] = [4; STEPS.len()];
-/// The same over azimuths, where the middles of all cells are listed. Four hills at first missed
-/// 3 % of an F82 error, 8.28e-5 of σ = (0.1, 1), γ = 2; twice as many at the end found 0.2 % more,
-/// of one lobe of `brushed-metals.toml`.
+/// [`HILLS`] over azimuths, where the middles of all cells are listed. With four hills in the first
+/// step, an F82 error of 8.28e-5 at σ = (0.1, 1), γ = 2 was missed by 3 %; twice as many in the
+/// last steps found 0.2 % more, for one lobe of `brushed-metals.toml`.
 const HILLS_OF_AZIMUTHS: [usize; STEPS.len()] = [8, 5, 2, 1, 1, 1];
 
-/// The same outside the promised domain.
+/// [`HILLS`] outside the promised domain.
 const HILLS_OUTSIDE: [usize; STEPS.len()] = [1; STEPS.len()];
 
 fn hills(spec: &AlbedoSpec) -> [usize; STEPS.len()] {
     if has_azimuths(spec) { HILLS_OF_AZIMUTHS } else { HILLS }
 }
 
-/// Number of places on the way uphill, at most, for the certificate of one directional table.
+/// The largest number of points that climbs measure for the certificate of one directional table.
 pub(crate) fn climbed_count(spec: &AlbedoSpec) -> usize {
     let directions = 2 * spec.axes.len() * if has_crease(spec) { 2 } else { 1 };
     let places = hills(spec).into_iter().chain(HILLS_OUTSIDE).sum::<usize>();
     quantities(spec).len() * places * directions
 }
 
-/// A quantity by its index, a place, and the quantity's error there.
+/// A quantity by its index, a point, and the error of the quantity at that point.
 type Top = (usize, Point, f64);
 
-/// The highest of the tops of each quantity, which stand together.
+/// The highest `count` tops of each quantity; the tops of a quantity are neighbours in the list.
 fn highest(tops: &[Top], count: usize) -> Vec<Top> {
     let of_quantity = |group: &[Top]| {
         let mut group = group.to_vec();
@@ -261,9 +260,9 @@ fn highest(tops: &[Top], count: usize) -> Vec<Top> {
     tops.chunk_by(|a, b| a.0 == b.0).flat_map(of_quantity).collect()
 }
 
-/// The places on the way uphill from where each quantity has its largest errors, inside the
-/// `promised` domain or outside, with their errors: the largest error lies between the listed
-/// places, and is found from the nearest.
+/// Climbs from the points at which each quantity has its largest errors, inside the `promised`
+/// domain or outside, since the largest error lies between the listed points. Returns the points on
+/// the way with their errors.
 fn climbed(
     spec: &AlbedoSpec,
     errors: &[At],
@@ -297,8 +296,9 @@ fn climbed(
         for ((i, point, error), own) in tops.iter_mut().zip(&around) {
             let own = from..from + own.len();
             from = own.end;
-            // Each hill goes on by itself, and the highest of a quantity from the best place of
-            // all: often a hill of another quantity, between its listed places, is higher.
+            // Each hill is climbed from its own points, but the highest of a quantity from the best
+            // of all: between the listed points of this quantity, a hill of another quantity is
+            // often higher.
             let is_highest = last.replace(*i) != Some(*i);
             let near = if is_highest { &errors[..] } else { &errors[own] };
             if let Some(top) = near.iter().max_by(|a, b| a.1[*i].total_cmp(&b.1[*i]))
@@ -320,21 +320,21 @@ fn measured_at(
     references.into_par_iter().map(one).collect()
 }
 
-/// The quantities that are read, in the order of their errors.
+/// The quantities that a lookup gives, in the order of their errors.
 fn quantities(spec: &AlbedoSpec) -> Vec<Quantity> {
     let channels = match spec.reflectance {
         Reflectance::Mirror => &["scale", "bias", "f82", "e"],
         _ => spec.reflectance.channels(),
     };
-    // One left out would give the errors of the next its name.
+    // Without an entry the errors of the next quantities would get wrong names.
     let of = |name: &&str| Quantity::named(name).expect("every channel is a quantity");
     channels.iter().map(of).collect()
 }
 
-/// Largest and root-mean-square errors of each quantity, and the place of the largest of all; the
-/// means leave out the places on a crease, and those `found` uphill.
+/// Largest and root-mean-square errors of each quantity, and the point of the largest of all; the
+/// means leave out points on a crease, and those `found` by climbs.
 fn summary(spec: &AlbedoSpec, errors: &[At], found: &[At]) -> Certificate {
-    // Of one material the values are hardly more bytes than all figures would be.
+    // The values of one material take hardly more bytes than all figures would.
     let is_range = spec.nodes_of_materials() > 1;
     let is_promised = |errors: &&At| errors.0.point.promised;
     let (mut inside, mut outside): (Vec<_>, Vec<_>) = errors.iter().partition(is_promised);
@@ -345,7 +345,7 @@ fn summary(spec: &AlbedoSpec, errors: &[At], found: &[At]) -> Certificate {
     };
     inside.extend(found.iter().filter(is_promised));
     outside.extend(found.iter().filter(|errors| !is_promised(errors)));
-    // A NaN counts as the worst error.
+    // `total_cmp` takes NaN for the largest error.
     let largest = |part: &[&At], i: usize| {
         part.iter().map(|errors| errors.1[i]).max_by(f64::total_cmp).map(round_up)
     };
@@ -362,7 +362,7 @@ fn summary(spec: &AlbedoSpec, errors: &[At], found: &[At]) -> Certificate {
     let place =
         inside.iter().max_by(|a, b| worst(a).unwrap_or(0.0).total_cmp(&worst(b).unwrap_or(0.0)));
     let at = place.map(|(Reference { site: Site { gamma, sigma, eta, phi, cos }, .. }, _)| {
-        // A single node is no place to choose from.
+        // A coordinate along an axis of a single node is the same at every point.
         let axis = |name: &str| spec.axes.iter().any(|axis| axis.name == name && axis.len() > 1);
         let all = [
             ("gamma", Coordinate::S, s_of_gamma(*gamma)),
@@ -382,8 +382,7 @@ fn summary(spec: &AlbedoSpec, errors: &[At], found: &[At]) -> Certificate {
     }
 }
 
-/// Errors of averages against quadrature of the directional albedo of the same material, as a
-/// furnace sees them.
+/// Errors of averages against quadrature of the tabulated directional albedo of the same material.
 fn averages(
     spec: &AlbedoSpec,
     table: &Table,
@@ -399,12 +398,11 @@ fn averages(
     Ok(certificate)
 }
 
-/// Scale, bias, F82 and E.
 fn all(moments: Moments) -> [f64; 4] {
     [moments.scale, moments.bias, moments.f82, moments.total()].map(f64::from)
 }
 
-/// What a renderer reads for one material.
+/// The tabulated values of one material, as a renderer reads them.
 enum Reading {
     Moments(TabulatedAlbedo),
     Shares(ViewCurve<CHANNELS>),
@@ -423,7 +421,6 @@ impl Reading {
         })
     }
 
-    /// The quantities at a view.
     fn at(&self, v: Vec3) -> Vec<f64> {
         match self {
             Self::Moments(albedo) => all(albedo.moments(v)).into(),
@@ -432,8 +429,8 @@ impl Reading {
     }
 }
 
-/// The error of a single lobe's table if every other node along an axis is left out. Of several
-/// axes, the one with the largest error is the coarsest.
+/// The error of a single lobe's table if every other node along an axis is left out: the axis with
+/// the largest error is the coarsest.
 ///
 /// # Errors
 /// [`MaterialError`] if the table is invalid.
@@ -449,7 +446,7 @@ pub fn missed_by_half(spec: &AlbedoSpec, table: &Table, axis: usize) -> Result<f
     Ok(sites.par_iter().map(missed).reduce(|| 0.0, f64::max))
 }
 
-/// Every other node along an axis.
+/// A table with every other node along an axis.
 fn half(table: &Table, axis: usize) -> Table {
     let mut thin = table.clone();
     thin.axes[axis].nodes = table.axes[axis].nodes.iter().copied().step_by(2).collect();

@@ -1,9 +1,9 @@
-//! Interpolation errors of tables, measured between their nodes through the f32 sampler itself.
+//! Certificates of tables of visible normals: interpolation errors between nodes, measured with the
+//! f32 sampler.
 //!
-//! The errors found here are the table's certificate. All places are fixed, so that the certificate
-//! is part of the table's reproducible bytes: listed places (ends of axes, middles of cells), a
-//! low-discrepancy sequence, and climbs from the worst of these to the maxima nearby, which no
-//! sequence meets.
+//! All points are fixed, so that the certificate is part of the table's reproducible bytes: listed
+//! points (ends of axes, middles of cells), a low-discrepancy sequence, and climbs from the worst
+//! of both to the maxima nearby, which no sequence meets.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -28,26 +28,25 @@ pub const POINTS: usize = 4000;
 /// The range of s of all shapes.
 pub const ALL_SHAPES: [f64; 2] = [0.0, S_END];
 
-/// One ulp of f32 just below 1. The rounding of single precision differs from point
-/// to point; this margin is left for points that were not measured.
+/// One ulp of f32 just below 1. The rounding of single precision differs from point to point; this
+/// margin is left for points that were not measured.
 pub(super) const ROUNDING: f64 = 1.0 / 16_777_216.0;
 
-/// A place in a table, in cells along the axes of shapes, of views and of random numbers.
-///
-/// Halves of a mirrored axis are joined at u = ½, so that u = 0 and 1 are its ends.
+/// A point of a table, in cells along the axes of shapes, of views and of random numbers. Halves of
+/// a mirrored axis are joined at u = ½, so that u = 0 and 1 are its ends.
 pub(super) type Place = [f64; 3];
 
-/// Places to measure along one axis.
+/// Coordinates to measure at along one axis.
 #[derive(Clone, Debug)]
 pub(super) struct Along {
     /// Number of cells; 0 where there is no axis.
     pub(super) cells: f64,
-    /// Listed places.
+    /// Listed coordinates.
     names: Vec<f64>,
 }
 
 impl Along {
-    /// For an axis that the table does not have.
+    /// No axis.
     pub(super) fn none() -> Self {
         Self { cells: 0.0, names: vec![0.0] }
     }
@@ -69,14 +68,14 @@ impl Along {
         Self { cells: 2.0 * half, names: [&low[..], &[half], &high].concat() }
     }
 
-    /// The same with more listed places, given as shares of the whole axis.
+    /// The same with more listed coordinates, given as shares of the axis.
     pub(super) fn and(mut self, names: impl IntoIterator<Item = f64>) -> Self {
         let cells = self.cells;
         self.names.extend(names.into_iter().map(|share| (share * cells).clamp(0.0, cells)));
         self
     }
 
-    /// The first part of the axis, up to a share of the whole.
+    /// The axis up to a share of it.
     pub(super) fn up_to(mut self, share: f64) -> Self {
         self.cells = (self.cells * share).ceil();
         self.names.iter_mut().for_each(|name| *name *= share);
@@ -87,7 +86,7 @@ impl Along {
         (0..self.cells as usize).map(|cell| cell as f64 + 0.5)
     }
 
-    /// The place of the number x in [0, 1).
+    /// The coordinate of the number x in [0, 1).
     fn place(&self, within: Within, x: f64) -> f64 {
         match within {
             _ if self.cells == 0.0 => 0.0,
@@ -98,7 +97,7 @@ impl Along {
     }
 }
 
-/// Where places stand within the cells of an axis.
+/// The position of points within the cells of an axis.
 #[derive(Clone, Copy)]
 enum Within {
     /// At the nodes, where errors of neighbouring rows do not mix.
@@ -107,7 +106,7 @@ enum Within {
     Anywhere,
 }
 
-/// Combinations that points of the sequence take in turn, on two axes and on one.
+/// Combinations of [`Within`] that points of the sequence take in turn, on two axes and on one.
 const TURNS: [[Within; 2]; 4] = [
     [Within::Middle, Within::Middle],
     [Within::Node, Within::Middle],
@@ -116,21 +115,21 @@ const TURNS: [[Within; 2]; 4] = [
 ];
 const TURNS_ALONE: [[Within; 2]; 4] = [TURNS[0], TURNS[3], TURNS[3], TURNS[3]];
 
-/// u at a place on a mirrored axis with so many cells in each half.
+/// u at `place` cells along a mirrored axis with `half` cells in each half.
 pub fn number(place: f64, half: f64) -> f32 {
     let of_half = |t: f64| MirroredRoot::number(t / half);
     let u = if place <= half { of_half(place) } else { 1.0 - of_half(2.0 * half - place) };
     u as f32
 }
 
-/// About so many places on two axes: pairs of listed places, listed places with middles of cells,
-/// and the sequence.
+/// About `points` points on two axes: pairs of listed coordinates, listed coordinates with middles
+/// of cells, and the sequence.
 pub(super) fn places([a, b]: [&Along; 2], points: usize) -> Vec<[f64; 2]> {
     let corners = a.names.iter().flat_map(|&x| b.names.iter().map(move |&y| [x, y]));
     let edges = a.names.iter().flat_map(|&x| b.middles().map(move |y| [x, y]));
     let others = b.names.iter().flat_map(|&y| a.middles().map(move |x| [x, y]));
     let edges: Vec<[f64; 2]> = edges.chain(others).collect();
-    // At most a third of all points; of more, an evenly spaced subset.
+    // If these are more than a third of all points, an evenly spaced subset of them.
     let kept = edges.len().min(points / 3);
     let edges = (0..kept).map(|i| edges[i * edges.len() / kept]);
     let named: Vec<[f64; 2]> = corners.chain(edges).collect();
@@ -142,7 +141,7 @@ pub(super) fn places([a, b]: [&Along; 2], points: usize) -> Vec<[f64; 2]> {
     named.iter().copied().chain(sequence).collect()
 }
 
-/// An error, and its place.
+/// An error, and its point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
     pub(super) error: f64,
@@ -172,7 +171,8 @@ pub(super) struct Found {
 }
 
 impl Found {
-    /// The certificate of a table of one quantity, rounded up; `with_rms` states the mean as well.
+    /// The certificate of a table of one quantity, rounded up; `with_rms` adds the root mean
+    /// square.
     pub(super) fn certificate(&self, of: Quantity, with_rms: bool) -> Certificate {
         let errors = Errors {
             largest: round_up(self.worst.error + ROUNDING),
@@ -187,8 +187,8 @@ impl Found {
     }
 }
 
-/// Climbs from the worst of `seen`, `climbs` times and from places at least a cell apart, along
-/// axes of so many cells (0 for a missing axis).
+/// Climbs from the worst of `seen`, `climbs` times and from points at least a cell apart, along
+/// axes of `cells` cells (0 for a missing axis).
 pub(super) fn climbed(
     mut seen: Vec<Seen>,
     climbs: usize,
@@ -233,12 +233,11 @@ fn climb(start: Seen, cells: Place, error: &impl Fn(Place) -> f64) -> (Seen, usi
 }
 
 /// The errors of one table of visible normals or masking, in a set with all tables that a material
-/// is made from, measured at about [`POINTS`] places for each of a few γ between every two nodes,
+/// is made from, measured at about [`POINTS`] points for each of a few γ between every two nodes,
 /// and rounded up to three digits.
 ///
-/// `s` limits the shapes to those that were asked for: a sub-range has nodes beyond its ends, for
-/// interpolation only, and between those it is less accurate. The table's description states the
-/// range it covers.
+/// `s` limits the shapes to those that the table covers: nodes beyond serve interpolation only, and
+/// between those the table is less accurate.
 pub(crate) fn measure(
     tables: &Tables,
     table: &Table,
@@ -254,7 +253,7 @@ pub(crate) fn measure(
     Ok(Certificate { at: ruler.named(found.worst.at), ..found.certificate(quantity, true) })
 }
 
-/// Rounds up to three significant digits: a certificate must not promise more than was measured.
+/// Rounds up to three significant digits, so that no certificate is below the measured error.
 pub(super) fn round_up(x: f64) -> f64 {
     if !(x > 0.0) {
         return x;
@@ -263,8 +262,8 @@ pub(super) fn round_up(x: f64) -> f64 {
     text.parse().expect("a number just printed")
 }
 
-/// Views and first random numbers with which slopes across are drawn: slopes across depend on
-/// neither, apart from rounding.
+/// Views and first random numbers with which slopes across are drawn, which depend on neither apart
+/// from rounding.
 const BESIDE: [([f32; 2], f32); 4] =
     [([0.0, 1.0], 0.4), ([1.0, 0.0], 1.0), ([0.6, 0.8], 0.0), ([1.0, 0.0], 0.5)];
 
@@ -282,13 +281,12 @@ impl Shapes {
     fn new(axis: &Axis, [low, high]: [f64; 2]) -> Self {
         let [first, last] = axis.ends();
         let [low, high] = [first.max(low), last.min(high)];
-        // At the seam itself, γ = 1.8, the tables of the whole distribution are read, not the
-        // peeled ones.
+        // At the seam itself, γ = 1.8, the tables of the whole distribution are read.
         let beside = low == s_of_gamma(GAMMA_WHOLE) && high > low + SEAM;
         let low = if beside { low + SEAM } else { low };
         let is_range = axis.interpolation != Interpolation::Nodes && axis.nodes.len() > 1;
-        // Slightly inside the far end, since 1 + 1/s may round to just outside; but a range may be
-        // narrower than that.
+        // Slightly inside the far end, since 1 + 1/s may round to just outside, but not below the
+        // near end.
         let s = [low, (high * (1.0 - 1e-15)).max(low)];
         Self { nodes: axis.nodes.clone(), is_range, s }
     }
@@ -298,7 +296,7 @@ impl Shapes {
         if self.is_range { (self.nodes.len() - 1) as f64 } else { 0.0 }
     }
 
-    /// Places of the ends of a range.
+    /// The ends of a range, in cells.
     pub(crate) fn ends(&self) -> [f64; 2] {
         let (nodes, count) = (&self.nodes, self.nodes.len());
         self.s.map(|s| {
@@ -307,7 +305,8 @@ impl Shapes {
         })
     }
 
-    /// Places to measure: those of a list, or three between every two nodes of a range.
+    /// Coordinates to measure at, in cells: all of a list; of a range its ends, nodes, and three
+    /// points between every two nodes.
     fn sweep(&self) -> Vec<f64> {
         let count = self.nodes.len();
         if !self.is_range {
@@ -319,7 +318,8 @@ impl Shapes {
         inside.chain(ends).collect()
     }
 
-    /// The place at a share of the range; of a list, that of the shape nearest to s.
+    /// The coordinate in cells at a share of the range; for a list, the index of the shape nearest
+    /// to s.
     pub fn place(&self, share: f64, s: f64) -> f64 {
         if self.is_range {
             let [first, last] = self.ends();
@@ -329,7 +329,7 @@ impl Shapes {
         (0..self.nodes.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0) as f64
     }
 
-    /// s at a place, inside the ends.
+    /// s at a coordinate in cells, inside the ends.
     pub fn s(&self, place: f64) -> f64 {
         let nodes = &self.nodes;
         if !self.is_range {
@@ -351,11 +351,11 @@ pub struct Ruler<'a> {
     numbers: Along,
 }
 
-/// A material made from the tables, and its shape in the model.
+/// A lobe made from the tables, and its shape in the model.
 pub type LobeAndShape = (StudentT, Shape);
 
 impl<'a> Ruler<'a> {
-    /// Of one of the tables, between two s.
+    /// For one of the tables, between two s.
     pub fn new(tables: &'a Tables, table: &'a Table, s: [f64; 2]) -> Self {
         let nodes = |axis: usize| table.axes[axis].nodes.len();
         let (views, numbers) = match table.kind {
@@ -367,8 +367,8 @@ impl<'a> Ruler<'a> {
     }
 
     fn measured(&self, points: usize, stage: &Stage) -> Result<Found, MaterialError> {
-        // A maximum that is missed at one γ is found at a neighbouring γ; a single γ has none and
-        // takes more points.
+        // A maximum that is missed at one γ is found at a neighbouring γ. A single γ has no
+        // neighbour and takes more points.
         let points = if self.shapes.is_range { points } else { 3 * points };
         let points = match self.table.kind {
             Kind::VisibleSlopeConditional => points / BESIDE.len(),
@@ -391,12 +391,12 @@ impl<'a> Ruler<'a> {
         stage.split(shapes.len() + 1);
         let seen = shapes.par_iter().map(at_shape).collect::<Result<Vec<_>, MaterialError>>()?;
         let cells = [self.shapes.cells(), self.views.cells, self.numbers.cells];
-        // `lobe` does not fail here: it has not at the points of the sweep on either side.
+        // `lobe` did not fail at the points of the sweep on either side, so it does not fail here.
         let error = |at: Place| self.lobe(at[0]).map_or(f64::NAN, |lobe| self.error(&lobe, at));
         Ok(climbed(seen.concat(), (points / 200).max(2), cells, error))
     }
 
-    /// The material and the shape at a place along the axis of shapes.
+    /// The lobe and the shape at a coordinate in cells along the axis of shapes.
     pub fn lobe(&self, place: f64) -> Result<LobeAndShape, MaterialError> {
         let gamma = gamma_of_s(self.shapes.s(place));
         let shape = Shape::new(gamma).map_err(|_| MaterialError::Gamma(gamma))?;
@@ -482,8 +482,8 @@ fn g1_error(lobe: &StudentT, shape: &Shape, v: Vec3) -> f64 {
 
 /// Difference between the CDF of the sampled slope and the random number it was sampled with.
 ///
-/// Where the heavy part is peeled, it is the error of the remaining part, weighted by its share,
-/// plus the error of that share.
+/// Where the heavy part is peeled: the error of the remaining part, weighted by its share, plus the
+/// error of that share.
 fn along_error(lobe: &StudentT, shape: &Shape, v: Vec3, u: f32) -> f64 {
     let at = UnitView::from_cotangent(exact_cotangent(v));
     let whole = VisibleSlope::new(shape, at);
@@ -517,7 +517,7 @@ fn signed(shape: &Shape, x: f64) -> SignedSlope {
 fn across_error(lobe: &StudentT, shape: &Shape, u: f32) -> f64 {
     let error = |([x, z], u1): ([f32; 2], f32)| {
         let m = lobe.sample_visible_normal(Vec3::new(x, 0.0, z), [u1, u]);
-        // The random number u₁ only scales y/√(z² + s x²), which is t again.
+        // t = y/√(z² + s x²) does not depend on u₁.
         let [x, y, z] = [m.x, m.y, m.z].map(f64::from);
         let t = y / (z * z + shape.s() * x * x).sqrt();
         (across_cdf(shape, signed(shape, t)) - f64::from(u)).abs()

@@ -1,8 +1,8 @@
-//! Places at which albedo tables are measured: corners, the middle of every cell along every edge,
+//! Points at which albedo tables are measured: corners, the middle of every cell along every edge,
 //! faces, the interior, and the crease of tilted lobes.
 //!
-//! Random places miss edges, where the windows of a polynomial are one-sided and errors largest,
-//! and the crease, where E has a kink: so those are listed. All places are fixed, so that
+//! Edges, where the windows of a polynomial are one-sided and errors largest, and the crease, where
+//! E has a kink, are listed because random points miss them. All points are fixed, so that
 //! certificates are part of a table's reproducible bytes.
 
 use rayon::prelude::*;
@@ -19,8 +19,8 @@ use crate::bake::albedo::{AlbedoSpec, Site, area_ratio, ellipsoid, product};
 const PROMISED: (f64, f64) = (0.01, 0.02);
 /// Smallest σ that is not a mirror.
 const SMOOTHEST: f64 = LogRoughness::BAKED.first;
-/// Interior places: one for so many nodes, within limits. With half as many places the climbs
-/// missed a maximum of the default set, an F82 error of 8.4e-5 where 7.3e-5 was found.
+/// Interior points: one for this number of nodes, within limits. With half as many points the
+/// climbs missed a maximum of the default set, an F82 error of 8.4e-5, and found 7.3e-5.
 const NODES_A_POINT: usize = 4;
 const FEWEST: usize = 240;
 const MOST: usize = 6144;
@@ -32,15 +32,15 @@ const VIEWS: [f64; 5] = [1.0, PROMISED.1, 1e-4, 3e-7, 0.0];
 /// Number of last cells that hold the cusp at the normal.
 const LAST_CELLS: f64 = 2.0;
 
-/// Lines across a crease in each cell of either axis, the middle of the cell among them.
+/// Lines across a crease in each cell of either axis, one of them in the middle of the cell.
 const LINES: usize = 4;
 
-/// A place to measure at.
+/// A point to measure at.
 #[derive(Clone, Debug)]
 pub struct Point {
     /// Coordinates along the axes.
     at: Vec<f64>,
-    /// The same place in quantities.
+    /// The same point in quantities.
     pub site: Site,
     /// Whether it lies in the promised domain.
     pub promised: bool,
@@ -51,7 +51,8 @@ pub struct Point {
 /// The promised range of an axis, in its coordinate.
 pub struct Range {
     ends: Vec<f64>,
-    /// From the first place to the last: the full circle of azimuths, which has no ends.
+    /// The first coordinate and the last; a full circle of azimuths is [0, 1], although its ends
+    /// coincide.
     whole: [f64; 2],
     /// The middles of the cells in the range.
     cells: Vec<f64>,
@@ -74,7 +75,7 @@ impl Range {
                 of(spec.reflectance.indices().unwrap_or(Interval::UNIT).into())
             }
             Mapping::Azimuth(_) if axis.len() == 1 => [0.0; 2],
-            // The ends of a full circle coincide: a quarter turn is the other corner.
+            // The ends of a full circle coincide, so a quarter turn is the other end.
             Mapping::Azimuth(azimuth) => [0.0, if azimuth.fold { 1.0 } else { 0.25 }],
             _ => [0.0, 1.0],
         };
@@ -99,7 +100,8 @@ impl Range {
         first + x * (last - first)
     }
 
-    /// The middle of a cell, at the share x ∈ [0, 1] of all cells; without cells, the place itself.
+    /// The middle of the cell at the share x ∈ [0, 1] of all cells; without cells, the only
+    /// coordinate.
     fn cell(&self, x: f64) -> f64 {
         let i = (x * self.cells.len() as f64) as usize;
         self.cells.get(i).copied().unwrap_or(self.ends[0])
@@ -116,8 +118,8 @@ pub(super) fn has_azimuths(spec: &AlbedoSpec) -> bool {
     spec.axes.iter().any(|axis| matches!(axis.mapping, Mapping::Azimuth(_)) && axis.len() > 1)
 }
 
-/// Number of the places at corners and along edges, without a list of them: plans ask for it of
-/// very many lobes.
+/// Number of the points at corners and along edges, without making a list: plans of very many lobes
+/// need only the number.
 pub fn edge_count(spec: &AlbedoSpec) -> usize {
     let ranges = ranges(spec);
     let (view, materials) = ranges.split_last().expect("the view is an axis");
@@ -128,14 +130,14 @@ pub fn edge_count(spec: &AlbedoSpec) -> usize {
     ends(None) * (VIEWS.len() + view.cells.len()) + edges * VIEWS.len()
 }
 
-/// About the number of the places on a crease: it crosses half of all azimuths once, and most
+/// About the number of the points on a crease, which crosses half of all azimuths once, and most
 /// views twice.
 pub fn crease_count(spec: &AlbedoSpec) -> usize {
     let count = |k: usize| spec.axes.get(k).map_or(0, Axis::len);
     if has_crease(spec) { LINES * (count(0) / 2 + 2 * count(1)) } else { 0 }
 }
 
-/// Number of the places that lie inside.
+/// Number of the interior points.
 pub fn interior_count(spec: &AlbedoSpec) -> usize {
     (spec.nodes() / NODES_A_POINT).clamp(FEWEST, MOST)
 }
@@ -160,8 +162,8 @@ fn point(spec: &AlbedoSpec, material: &[f64], view: View) -> Point {
         site.cos = cos;
         at[material.len()] = coordinate(&spec.axes[material.len()], &site);
     }
-    // If all materials are smoother, the roughest counts: otherwise there would be no promised
-    // place.
+    // If all materials are smoother than the promised domain, the roughest is promised: otherwise
+    // no point would be.
     let roughest = spec.lobe.is_family().then(|| spec.lobe.roughness.x().max);
     let smoothest = roughest.map_or(0.0, |roughest| PROMISED.0.min(roughest) * (1.0 - 1e-9));
     let promised = site.cos as f32 >= PROMISED.1 as f32 && site.sigma >= smoothest;
@@ -183,7 +185,7 @@ fn coordinate(axis: &Axis, Site { gamma, sigma, eta, cos, .. }: &Site) -> f64 {
     }
 }
 
-/// The place of a view by its cosine, at coordinates along the axes of materials.
+/// The point of a view by its cosine, at coordinates along the axes of materials.
 pub fn seen(spec: &AlbedoSpec, material: &[f64], cos: f64) -> Point {
     point(spec, material, View::Cos(cos))
 }
@@ -197,7 +199,7 @@ pub fn promised_views(axis: &Axis, site: Site) -> impl Fn(f64) -> f64 + use<> {
     move |share| site.cos_at(&axis, low + share * (1.0 - low)).clamp(PROMISED.1, 1.0)
 }
 
-/// Whether two places are a cell or more apart along some axis.
+/// Whether two points are a cell or more apart along some axis.
 pub fn are_apart(spec: &AlbedoSpec, a: &Point, b: &Point) -> bool {
     let apart = |(k, axis): (usize, &Axis)| (a.at[k] - b.at[k]).abs() >= cell(axis);
     spec.axes.iter().enumerate().any(|(k, axis)| axis.nodes.len() > 1 && apart((k, axis)))
@@ -209,8 +211,8 @@ fn cell(axis: &Axis) -> f64 {
     (last - first) / (axis.nodes.len() - 1).max(1) as f64
 }
 
-/// Promised neighbours of a place, `cells` away along each axis; of a place on a crease, also those
-/// on it.
+/// The neighbours of a point, `cells` away along each axis, that are promised if the point is; of a
+/// point on a crease, also neighbours on the crease.
 pub fn beside(spec: &AlbedoSpec, point: &Point, cells: f64) -> Vec<Point> {
     let crease = Crease::of(spec).filter(|_| point.on_crease);
     let mut points = Vec::new();
@@ -229,9 +231,9 @@ pub fn beside(spec: &AlbedoSpec, point: &Point, cells: f64) -> Vec<Point> {
     points
 }
 
-/// Surfaces smoother than the promised ones where tails are heaviest, between all nodes: in the
-/// middle of the cell of the smallest γ and of every cell of σ, in every third cell of the view.
-/// None for a table without them.
+/// Points of surfaces smoother than the promised ones, where tails are heaviest: in the middle of
+/// the cell of the smallest γ, of every cell of σ and of every third cell of the view. None for a
+/// table without such surfaces.
 pub fn smooth(spec: &AlbedoSpec) -> Vec<Point> {
     if !spec.lobe.is_family() {
         return Vec::new();
@@ -275,13 +277,14 @@ impl<'a> Crease<'a> {
         ellipsoid(&spec.lobe).ok().filter(|_| kink).map(|ellipsoid| Self { spec, ellipsoid })
     }
 
-    /// Its promised places with the coordinate t along an axis: 0, azimuth, or 1, view.
+    /// The promised points of the crease with the coordinate t along an axis: 0, azimuth, or 1,
+    /// view.
     fn crossings(&self, axis: usize, t: f64) -> Vec<Point> {
         let at = |x: f64| if axis == 0 { [t, x] } else { [x, t] };
         let clamped =
             |x: f64| area_ratio(&self.ellipsoid, &Site::new(&self.spec.axes, &at(x))) < 1.0;
         let other = &self.spec.axes[1 - axis];
-        // At the normal itself every azimuth meets the curve.
+        // At normal incidence itself the curve meets every azimuth.
         let last = if is_circle(other) { 1.0 } else { 1.0 - 1e-3 * cell(other) };
         let stops = other.nodes.iter().copied().filter(|node| *node < last).chain([last]);
         let stops: Vec<(f64, bool)> = stops.map(|x| (x, clamped(x))).collect();
@@ -298,7 +301,8 @@ impl<'a> Crease<'a> {
         changes.map(root).filter(|place| place.promised).collect()
     }
 
-    /// Its place with the coordinate of `at` along an axis that is nearest along the other.
+    /// Of the points of the crease with the coordinate of `at` along an axis, the nearest along the
+    /// other.
     fn nearest(&self, axis: usize, at: &[f64]) -> Option<Point> {
         let other = 1 - axis;
         let circle = is_circle(&self.spec.axes[other]);
@@ -315,8 +319,8 @@ pub(super) fn has_crease(spec: &AlbedoSpec) -> bool {
     Crease::of(spec).is_some()
 }
 
-/// Where the crease of a tilted lobe crosses lines of equal azimuth and of equal view, some in each
-/// cell; none for other lobes.
+/// The points at which the crease of a tilted lobe crosses lines of equal azimuth and of equal cos
+/// θ, [`LINES`] in each cell; none for other lobes.
 pub fn crease(spec: &AlbedoSpec) -> Vec<Point> {
     let Some(crease) = Crease::of(spec) else { return Vec::new() };
     let lines = |(k, axis): (usize, &Axis)| {
@@ -347,7 +351,7 @@ pub fn edges(spec: &AlbedoSpec) -> Vec<Point> {
 /// azimuth.
 ///
 /// Errors over azimuths have many hills of a cell's width. With the middles of half the cells, as
-/// on a chessboard, an F82 error of 8.5e-4 was certified as 8.13e-4, of σ = (0.05, 0.4), γ = 1.6.
+/// on a chessboard, an F82 error of 8.5e-4 at σ = (0.05, 0.4), γ = 1.6 was certified as 8.13e-4.
 pub fn middles(spec: &AlbedoSpec) -> Vec<Point> {
     let ranges = ranges(spec);
     let [azimuth, view] = &ranges[..] else { return Vec::new() };
@@ -355,7 +359,7 @@ pub fn middles(spec: &AlbedoSpec) -> Vec<Point> {
     azimuth.cells.iter().flat_map(views).collect()
 }
 
-/// Number of the places in the middles of cells.
+/// Number of the points of [`middles`].
 pub fn middle_count(spec: &AlbedoSpec) -> usize {
     let ranges = ranges(spec);
     let [azimuth, view] = &ranges[..] else { return 0 };
@@ -368,10 +372,9 @@ fn ends<'a>(materials: &'a [Range], along: Option<usize>) -> impl Iterator<Item 
     product(materials.iter().enumerate().map(here)).into_iter()
 }
 
-/// Interior places: a third anywhere, a third on a face with the view in the middle of a cell, and
+/// Interior points: a third anywhere, a third on a face with the view in the middle of a cell, and
 /// a third with some axis in the middle of a cell; an eighth of all lies outside the promised
-/// domain. Apart from the cells, places do not depend on the numbers of views and azimuths: they
-/// serve the finer tables of a lobe, too, where some are nodes.
+/// domain. The same points serve the refined tables of a lobe, in which some of them are nodes.
 pub fn interior(spec: &AlbedoSpec) -> Vec<Point> {
     let ranges = ranges(spec);
     let (view, materials) = ranges.split_last().expect("the view is an axis");
@@ -388,7 +391,8 @@ pub fn interior(spec: &AlbedoSpec) -> Vec<Point> {
                     }
                 }
                 (2, j) if j / 2 == k => range.cell(x),
-                // Preparing a shape takes longer than a view of it: so only a few shapes are used.
+                // Only a few shapes are used, since to prepare a shape takes longer than to
+                // integrate at one view.
                 _ if matches!(spec.axes[k].mapping, Mapping::LogShape(_)) => some_shape(range, x),
                 _ => range.at(x),
             }
@@ -400,7 +404,7 @@ pub fn interior(spec: &AlbedoSpec) -> Vec<Point> {
             (0, _) => return outside(spec, material, x, i % 16 == 8),
             (_, 1) if i / 3 % (2 * ranges.len()) / 2 == materials.len() => View::Cos(PROMISED.1),
             (_, 1) => View::At(view.cell(b)),
-            // Near the normal, where masking sets in with a cusp: logarithmically, and evenly.
+            // Near normal incidence, where masking begins with a cusp.
             (1 | 5, _) => {
                 View::At(1.0 - LAST_CELLS * b / (spec.axes[materials.len()].len() - 1) as f64)
             }
@@ -412,7 +416,8 @@ pub fn interior(spec: &AlbedoSpec) -> Vec<Point> {
     (0..interior_count(spec)).map(place).collect()
 }
 
-/// A shape: the ends, or one of three places in a cell.
+/// The coordinate of a shape: an end of the range, the middle of a cell, or one between two
+/// middles.
 fn some_shape(range: &Range, x: f64) -> f64 {
     let n = range.cells.len();
     let i = (x * (2 * n + 1) as f64) as usize;
@@ -425,8 +430,8 @@ fn some_shape(range: &Range, x: f64) -> f64 {
     }
 }
 
-/// A grazing view and, if `smooth`, a surface smoother than the promised ones, if there are any, at
-/// a view where it masks.
+/// A point at a view grazing enough for the surface to mask and, if `smooth` and the range has any,
+/// of a surface smoother than the promised ones.
 fn outside(spec: &AlbedoSpec, mut material: Vec<f64>, x: [f64; 4], smooth: bool) -> Point {
     let Interval { min, max } = spec.lobe.roughness.x();
     if spec.lobe.is_family() && min <= SMOOTHEST && smooth {

@@ -1,7 +1,7 @@
-//! Errors of the tables of a distribution outside the family, through the run-time sampler, against
+//! Errors of the tables of a distribution outside the family, read by the run-time sampler, against
 //! quadrature.
 //!
-//! Places are spaced along the tables' own axes, as in [`certificate`](super::certificate): even
+//! Points are spaced along the tables' own axes, as in [`certificate`](super::certificate): even
 //! steps of θ would nearly all miss a narrow distribution.
 
 use glam::{DVec3, Vec3};
@@ -22,24 +22,24 @@ use crate::table_spec::Quality;
 
 /// Normals drawn for either certificate of slopes; a quarter is left for climbs.
 pub(crate) const POINTS: usize = 8000;
-/// Climbs of each certificate; three times as many where there are several ways to draw.
+/// Climbs of each certificate; three times as many for slopes across.
 const CLIMBS: usize = 32;
-/// Places in each cell of the tables with one axis.
+/// Points in each cell of the tables with one axis.
 const PER_CELL: usize = 12;
 
 /// Slopes across are tested at in-plane slopes that random numbers at least this far from 0 and 1
-/// draw, in single precision: rarer in-plane slopes are hardly ever drawn.
+/// draw: in single precision, rarer in-plane slopes are hardly ever drawn.
 const RARE: f64 = ROUNDING;
 
 /// Cotangents, divided by σ, of views that see the steepest slopes. Random numbers just below 1 are
 /// so coarse that a single view would draw few of these.
 const SLANTS: [f64; 5] = [0.0, 0.03, 0.1, 0.3, 1.0];
-/// How many they are.
+/// The number of [`SLANTS`].
 pub(crate) const SLANTED: f64 = SLANTS.len() as f64;
-/// Number of the last random numbers below 1 that are all tried.
+/// Number of random numbers just below 1, all of which are tried.
 const LAST: f64 = 16.0;
-/// Ways to draw slopes across: from each view, by the row of the in-plane slope or by the last
-/// random numbers.
+/// Ways to draw slopes across: from each view of [`SLANTS`], by the row of the in-plane slope or by
+/// the random numbers just below 1.
 const WAYS: usize = 2 * SLANTS.len();
 
 /// Largest errors measured.
@@ -56,7 +56,7 @@ pub struct Errors {
     pub density: f64,
 }
 
-/// Measures a material made from tables against the distribution they were baked from, at places
+/// Measures a lobe made from tables against the distribution that they were baked from, at points
 /// spaced by the nodes of default quality.
 pub fn measure(radial: &Lobe, marginal: &Marginal) -> Errors {
     let kappa = marginal.beyond(0.0).excess;
@@ -78,7 +78,7 @@ fn found(radial: &Lobe, marginal: &Marginal, kind: Kind, axes: &[Axis]) -> Found
     let ruler = Ruler::new(radial, marginal, axes);
     let mut first = Along::whole(axes[0].nodes.len()).up_to(read(kind, &axes[0]));
     if kind == Kind::RadialDensity {
-        // D has a kink where the slopes end.
+        // D has a kink at the largest slope.
         let end = HalfTangent::default().coordinate(marginal.reach());
         first = first.and([end * (1.0 - 1e-5), end * (1.0 - 1e-6), end]);
     }
@@ -101,17 +101,16 @@ fn found(radial: &Lobe, marginal: &Marginal, kind: Kind, axes: &[Axis]) -> Found
     searched(places([&first, &numbers], points), cells, ways, error)
 }
 
-/// The share of the first axis that is read.
+/// The share of the first axis that lookups read.
 pub fn read(kind: Kind, axis: &Axis) -> f64 {
     match axis.mapping {
-        // In-plane slopes end at their bound R, which is κ of this axis: rows beyond it are not
-        // read.
+        // In-plane slopes end at their bound R, which is κ of this axis.
         Mapping::Rational(_) if kind == Kind::RadialConditional => 0.5,
         _ => 1.0,
     }
 }
 
-/// Measures the sweep of places, drawing in each of `ways` in turn, and climbs from the worst.
+/// Measures the points of a sweep, drawing in each of `ways` in turn, and climbs from the worst.
 fn searched(
     sweep: Vec<[f64; 2]>,
     [a, b]: [f64; 2],
@@ -119,9 +118,9 @@ fn searched(
     error: impl Fn([f64; 3]) -> f64 + Sync,
 ) -> Found {
     let at = |i: usize, [x, y]: [f64; 2]| {
-        // The way takes the place of a shape.
+        // A point has the way instead of a shape.
         let way = i % ways;
-        // Each random number gets one place, so that climbs start from it only once.
+        // Each random number has one coordinate, so that climbs start from it only once.
         let x = if way < SLANTS.len() { x } else { last(x / a) / LAST * a };
         let at = [way as f64, x, y];
         Seen { error: error(at), at }
@@ -138,12 +137,12 @@ fn searched(
     Found { worst, points: found.points + again.points, ..found }
 }
 
-/// How many numbers before the last one below 1, at a share of an axis.
+/// The number of random numbers between the last one below 1 and the one at a share of an axis.
 fn last(share: f64) -> f64 {
     (LAST * share).round()
 }
 
-/// A distribution and its tables, one of which has these axes.
+/// Measures one of the tables of a distribution.
 pub struct Ruler<'a> {
     radial: &'a Lobe,
     marginal: &'a Marginal<'a>,
@@ -152,14 +151,14 @@ pub struct Ruler<'a> {
 }
 
 impl<'a> Ruler<'a> {
-    /// Of one of its tables.
+    /// For the table with these axes.
     pub fn new(radial: &'a Lobe, marginal: &'a Marginal<'a>, axes: &'a [Axis]) -> Self {
         let slanted = SLANTS.map(|z| (view(z * marginal.sigma()), MarginalView::new(marginal, z)));
         Self { radial, marginal, slanted, axes }
     }
 
-    /// The error at places along the axes, in shares of what is read of them; of slopes across, the
-    /// largest from all of the slants measured.
+    /// The error at coordinates along the axes, in shares of what is read of them; of slopes
+    /// across, the largest over all views of [`SLANTS`].
     pub fn error(&self, kind: Kind, [first, u]: [f64; 2]) -> f64 {
         let cells = |axis: usize| (self.axes[axis].nodes.len() - 1) as f64;
         let place = first * cells(0) * read(kind, &self.axes[0]);
@@ -175,7 +174,7 @@ impl<'a> Ruler<'a> {
         }
     }
 
-    /// The cotangent or slope that is `place` cells along the first axis, divided by σ.
+    /// The cotangent or slope, divided by σ, at `place` cells along the first axis.
     fn quantity(&self, place: f64) -> f64 {
         // Without a γ axis s is 1.
         cotangent(&self.axes[0], 1.0, place / (self.axes[0].nodes.len() - 1) as f64)
@@ -212,8 +211,8 @@ impl<'a> Ruler<'a> {
         (exact.shares(x).below - f64::from(u)).abs()
     }
 
-    /// The first random number that draws the in-plane slope at a place, or one of the last numbers
-    /// below 1, chosen by that place's share of the axis.
+    /// The first random number that draws the in-plane slope at `place` cells, or, for the second
+    /// half of the ways, the number just below 1 that a share of the axis stands for.
     fn first_number(&self, way: usize, place: f64, share: f64) -> f32 {
         let u = match self.slanted.get(way) {
             Some((_, seen)) => 1.0 - seen.shares(self.quantity(place)).above,

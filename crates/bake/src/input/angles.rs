@@ -13,7 +13,7 @@ pub enum Angles {
 }
 
 impl Angles {
-    /// The name of the unit, as a number is followed by it.
+    /// The name of the unit, in the plural.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Radians => "radians",
@@ -29,8 +29,8 @@ impl Angles {
         }
     }
 
-    /// A polar angle in [0, π/2], in radians. Up to 1e-5 above π/2 is a rounded π/2, as 1.5708 is,
-    /// and counts as π/2: a view beyond it would lie below the horizon.
+    /// A polar angle in [0, π/2], in radians. An angle up to 1e-5 above π/2, such as 1.5708, counts
+    /// as a rounded π/2.
     ///
     /// # Errors
     /// The range of the angle, and whether it may have been meant in degrees.

@@ -8,7 +8,7 @@ use super::angles::Angles;
 use super::rows::{Row, RowError, Rows};
 use super::{Limited, MAX_TEXT};
 
-/// Most rows of a measurement. A fit to as many takes some seconds.
+/// Most rows of a measurement. A fit to that many takes some seconds.
 pub const MAX_ROWS: usize = 1_000_000;
 
 /// Why a measurement could not be read.
@@ -23,14 +23,13 @@ pub enum MeasuredError {
     /// There are more rows than [`MAX_ROWS`].
     #[error("more than {MAX_ROWS} rows: leave some out, or average neighbours")]
     TooMany,
-    /// All the rows together are no distribution.
+    /// The rows together make no distribution.
     #[error(transparent)]
     Distribution(TabulatedError),
 }
 
 microfacet_core::debug_in_words!(MeasuredError);
 
-/// A row of a measurement.
 struct Measured {
     line: u64,
     /// The angle as written.

@@ -81,7 +81,7 @@ impl<R: Read> Rows<R> {
             if !found {
                 return Ok(None);
             }
-            // A row ends with the first line break at the latest, if it is not in quotes.
+            // An unquoted row ends at its line break, so only an open quote takes in all `ENDS`.
             if self.bytes() == self.reader.get_ref().bytes + ENDS {
                 return Err(RowError::new(line, "a quote is opened here and never closed"));
             }
@@ -93,7 +93,7 @@ impl<R: Read> Rows<R> {
     }
 }
 
-/// Line breaks that are put after the last byte, to see whether a quote takes them in.
+/// Line breaks that are appended to the text: an unclosed quote takes in all of them.
 const ENDS: u64 = 2;
 
 /// A stream that notes where the lines of its text begin.
@@ -101,7 +101,7 @@ const ENDS: u64 = 2;
 struct Numbered<R> {
     input: R,
     comment: Option<u8>,
-    /// Bytes of the text so far, and line breaks.
+    /// Bytes and line breaks of the text so far.
     bytes: u64,
     breaks: u64,
     last: u8,
@@ -194,7 +194,7 @@ mod tests {
         assert_eq!(&rows.read().unwrap().unwrap().fields[1], "b\r\nc");
         rows.read().unwrap();
         assert!(rows.read().unwrap().is_none());
-        // With the line feeds that are put after it.
+        // Including the line feeds that are appended.
         assert_eq!(rows.bytes(), text.len() as u64 + ENDS);
     }
 
@@ -212,7 +212,7 @@ mod tests {
             assert_eq!(read.len(), 1, "{text:?}");
             assert_eq!(error.map(|error| error.line), Some(3), "{text:?}");
         }
-        // These are closed, whatever follows.
+        // These quotes are closed.
         for text in ["\"1\n\"", "\"1\n\n\"\n", "\"1\"\r", "\"1\"\r\n", "1\"", "1,\"\""] {
             assert_eq!((rows(text).0.len(), rows(text).1), (1, None), "{text:?}");
         }

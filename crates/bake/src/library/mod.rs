@@ -1,8 +1,8 @@
-//! A library of materials: any number of them, baked by any number of processes.
+//! A library of any number of materials, baked by any number of processes.
 //!
 //! [`Library`] divides a scene into sets of at most [`PER_SET`] materials and plans each by itself.
-//! A [`Shard`] of what they need is what one process bakes into a cache that all use; [`Receipt`]s
-//! in the cache say which shards are done, and of what.
+//! One process bakes one [`Shard`] of their needs into a cache that all processes share;
+//! [`Receipt`]s in the cache state which shards are done, and of which needs.
 
 mod receipt;
 mod shard;
@@ -25,7 +25,7 @@ pub const PER_SET: usize = 10_000;
 pub struct Part {
     /// The materials.
     pub scene: Scene,
-    /// What they need.
+    /// The tables that they need.
     pub plan: Plan,
 }
 
@@ -52,7 +52,7 @@ impl Library {
         self.parts.iter().map(|part| (&part.scene, &part.plan))
     }
 
-    /// What all sets need, each thing once, with its [`Need::id`].
+    /// The needs of all sets, each once, with its [`Need::id`].
     ///
     /// # Errors
     /// As [`Need::of`].
@@ -60,8 +60,8 @@ impl Library {
         distinct(self.parts.iter().map(|part| Need::of(&part.plan, target)))
     }
 
-    /// What [`AlbedoWish::All`](crate::plan::AlbedoWish::All) would add to that where
-    /// [`AlbedoWish::Auto`](crate::plan::AlbedoWish::Auto) leaves out what takes long.
+    /// The needs that [`AlbedoWish::All`](crate::plan::AlbedoWish::All) would add where
+    /// [`AlbedoWish::Auto`](crate::plan::AlbedoWish::Auto) leaves out albedos that take long.
     ///
     /// # Errors
     /// As [`Need::of`].
@@ -74,7 +74,7 @@ impl Library {
     }
 
     /// Bakes needs into the cache of the settings, one after the other, and calls `after` with the
-    /// number that is done. Returns how many had to be baked; the others were there.
+    /// number that is done. Returns the number of needs that the cache lacked.
     ///
     /// # Errors
     /// As [`Need::bake`]; what was baked before stays in the cache.
@@ -93,7 +93,6 @@ impl Library {
     }
 }
 
-/// The needs of several sets, each once, with its [`Need::id`].
 fn distinct(
     sets: impl Iterator<Item = Result<Vec<Need>, BakeError>>,
 ) -> Result<Vec<(String, Need)>, BakeError> {
@@ -109,7 +108,7 @@ fn distinct(
     Ok(needs)
 }
 
-/// Scenes of at most `per_set` materials in use; what else a scene holds stays with the first.
+/// Scenes of at most `per_set` materials in use; all but the materials stays with the first scene.
 fn divided(mut scene: Scene, per_set: usize) -> Vec<Scene> {
     let materials = std::mem::take(&mut scene.materials);
     let mut parts = vec![scene];

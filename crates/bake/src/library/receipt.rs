@@ -1,8 +1,5 @@
-//! What the shards of a library leave in their cache: which are done, and of what.
-//!
-//! Tables in a cache are never out of date, since their names are made of all that they depend on.
-//! But a shard of another state of the scene, or of another version, is of no use: its receipt
-//! tells before the set is assembled.
+//! Receipts of the shards of a library in their cache. They tell which shards are done, and whether
+//! a shard is of another state of the scene or of another version, so that its tables are not used.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -18,7 +15,7 @@ use crate::table_set::Need;
 /// The folder of receipts in that of a cache.
 const FOLDER: &str = "shards";
 
-/// That a shard is done.
+/// States that a shard is done.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Receipt {
     /// The name of the scene's file.
@@ -34,7 +31,7 @@ pub struct Receipt {
 }
 
 impl Receipt {
-    /// The receipt of a shard of these needs, all those of the library.
+    /// The receipt of a shard; `needs` are all those of the library.
     pub fn new(scene: &Path, shard: Shard, needs: &[(String, Need)]) -> Self {
         Self {
             scene: scene.file_name().unwrap_or_default().to_string_lossy().into_owned(),
@@ -45,17 +42,17 @@ impl Receipt {
         }
     }
 
-    /// Whether both are of the same needs, made by the same version.
+    /// Whether both are of the same needs and of the same version.
     fn is_same(&self, other: &Self) -> bool {
         self.needs == other.needs && self.versions == other.versions
     }
 
-    /// Leaves it in a cache, in the place of an older one of the same shard and needs.
+    /// Writes it into a cache; an older receipt of the same shard and needs is replaced.
     ///
     /// # Errors
     /// Those of the operating system, with the path.
     pub fn leave(&self, cache: &Path) -> io::Result<()> {
-        // Libraries of the same file name, and states of one, may share a cache.
+        // Libraries of the same file name, and states of one library, may share a cache.
         let Self { scene, shard, of, versions, needs } = self;
         let library = &sha256(&format!("{scene}\n{versions}\n{needs}"))[..16];
         let json = serde_json::to_string_pretty(self).map_err(io::Error::other)? + "\n";
@@ -72,7 +69,7 @@ pub struct Receipts {
 }
 
 impl Receipts {
-    /// Those of the scene's file name; none if the folder cannot be read.
+    /// The receipts of the scene's file name; none if the folder cannot be read.
     pub fn read(cache: &Path, scene: &Path) -> Self {
         let mut found = Self::default();
         let Ok(folder) = fs::read_dir(cache.join(FOLDER)) else { return found };
@@ -82,7 +79,8 @@ impl Receipts {
         for path in paths {
             let text = input::read_text(&path, MAX_TEXT).ok();
             let receipt = text.and_then(|text| serde_json::from_str::<Receipt>(&text).ok());
-            // Of 9e18 shards not even the missing ones could be listed.
+            // A number of shards that is not limited could make a list of missing ones that fits no
+            // memory.
             let exists =
                 |receipt: &Receipt| Shard { number: receipt.shard, of: receipt.of }.exists();
             match receipt.filter(exists) {
@@ -107,16 +105,16 @@ impl Receipts {
         self.all.iter().any(|receipt| receipt.is_same(ours))
     }
 
-    /// Why tables may be missing where the set is assembled: nothing if there are no receipts, or
-    /// if all shards of some number are done. `ours` is the receipt of the library as it is now, of
-    /// any shard.
+    /// Why tables may be missing when the set is assembled: nothing if there are no receipts, or if
+    /// all N shards are done for some N. `ours` is the receipt of any shard of the library as it is
+    /// now.
     pub fn doubts(&self, ours: &Receipt) -> Vec<String> {
         let mut ended: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
         for receipt in self.all.iter().filter(|receipt| receipt.is_same(ours)) {
             ended.entry(receipt.of).or_default().insert(receipt.shard);
         }
         let mut doubts = Vec::new();
-        // Of the number of shards with the most done.
+        // The number of shards of which most are done.
         if let Some((&of, ended)) = ended.iter().max_by_key(|(of, ended)| (ended.len(), **of)) {
             let missing: Vec<usize> = (1..=of).filter(|i| !ended.contains(i)).collect();
             let have = match missing.len() {
@@ -131,8 +129,8 @@ impl Receipts {
         doubts
     }
 
-    /// What to say of those that are of another state of the scene, of other options or of another
-    /// version, and of files that are no receipts.
+    /// Messages on receipts of another state of the scene, of other options or of another version,
+    /// and on files that are no receipts.
     pub fn others(&self, ours: &Receipt) -> Vec<String> {
         let others = self.all.iter().filter(|receipt| !receipt.is_same(ours));
         let (stale, foreign): (Vec<&Receipt>, Vec<&Receipt>) =
@@ -164,7 +162,7 @@ impl Receipts {
     }
 }
 
-/// The first few of a list.
+/// The first eight of a list, and the number of the others.
 fn listed(all: &[impl ToString]) -> String {
     const SHOWN: usize = 8;
     let mut names: Vec<String> = all.iter().take(SHOWN).map(ToString::to_string).collect();
@@ -195,7 +193,7 @@ mod tests {
     fn what_shards_left_is_said() {
         assert_eq!(said(&[]), "");
         assert_eq!(said(&[receipt(1, 2, "now"), receipt(2, 2, "now")]), "");
-        // Those of last week do not matter once all are done.
+        // Older receipts do not matter once all shards are done.
         let all = [receipt(1, 2, "now"), receipt(2, 2, "now"), receipt(3, 4, "before")];
         assert_eq!(said(&all), "");
         let lost = said(&[receipt(2, 3, "now"), receipt(3, 3, "now")]);
@@ -207,7 +205,7 @@ mod tests {
              options"
         );
         assert_eq!(said(&[receipt(1, 1, "before"), receipt(1, 1, "now")]), "");
-        // Another library of the same name takes no receipt away.
+        // Another library of the same name replaces no receipt.
         assert_eq!(said(&[receipt(1, 1, "now"), receipt(1, 1, "other")]), "");
         let other = Receipt { versions: "numerics 5".into(), ..receipt(1, 1, "now") };
         assert!(said(&[other]).contains("shard 1/1 is of another version (numerics 5; this is"));
@@ -223,7 +221,7 @@ mod tests {
             fs::write(cache.path().join(FOLDER).join(name), text).unwrap();
         };
         write("odd.json", "{");
-        // Shards that cannot be.
+        // Shards that cannot exist.
         for (shard, of) in [(1, 9_000_000_000_000_000_000), (3, 2), (0, 2), (0, 0)] {
             let never = Receipt { shard, of, ..receipt(1, 1, "now") };
             write(&format!("{shard}-{of}.json"), &serde_json::to_string(&never).unwrap());

@@ -1,4 +1,4 @@
-//! Shares of what a library needs, one for each process.
+//! Shares of the needs of a library, one for each process.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -67,9 +67,9 @@ impl Shard {
         (1..=Self::MOST).contains(&self.of) && (1..=self.of).contains(&self.number)
     }
 
-    /// Its part of the needs, in their order. The parts of all shards are disjoint and hold every
-    /// need, and the planner's seconds are balanced: the longest need goes first, to the shard that
-    /// has least to do. Every machine divides the same needs in the same way.
+    /// The needs of this shard, in their order. The shards are disjoint and together hold every
+    /// need. The planned seconds are balanced: the longest need goes first, to the shard that has
+    /// least to do. Every machine divides the same needs in the same way.
     #[must_use]
     pub fn take(self, needs: Vec<(String, Need)>) -> Vec<(String, Need)> {
         let seconds: Vec<f64> = needs.iter().map(|(_, need)| need.seconds()).collect();
@@ -79,7 +79,7 @@ impl Shard {
     }
 }
 
-/// Which shard has each need, by the seconds that they take.
+/// The shard of each need, from 0, by the seconds that needs take.
 fn owners(seconds: &[f64], shards: usize) -> Vec<usize> {
     let nanoseconds: Vec<u64> = seconds.iter().map(|seconds| (1e9 * seconds) as u64).collect();
     let mut longest: Vec<usize> = (0..seconds.len()).collect();
@@ -91,7 +91,7 @@ fn owners(seconds: &[f64], shards: usize) -> Vec<usize> {
     for i in longest {
         if let Some(Reverse((load, shard))) = loads.pop() {
             owners[i] = shard;
-            // What takes no time at all is spread as well.
+            // Needs that take no time are spread as well.
             loads.push(Reverse((load.saturating_add(nanoseconds[i].max(1)), shard)));
         }
     }

@@ -1,4 +1,4 @@
-//! Which albedo tables a scene requires: only for lobes, reflectances and forms of masking of
+//! The albedo tables that a scene requires, for lobes, reflectances and forms of masking of
 //! materials that ask for albedos.
 
 use std::collections::HashMap;
@@ -28,12 +28,12 @@ pub enum AlbedoWish {
 }
 
 impl AlbedoWish {
-    /// Seconds of one thread up to which albedos need not be asked for.
+    /// Seconds of one thread below which [`Auto`](Self::Auto) bakes the albedos of a scene of
+    /// another format.
     pub const QUICK: f64 = 2.0;
 }
 
-/// Albedos that one table group covers, of one lobe or a range of the family; they are baked,
-/// measured and kept together.
+/// Albedos of one table group, of one lobe or a range of the family.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct RequiredAlbedo {
     /// The lobes.
@@ -51,12 +51,12 @@ impl RequiredAlbedo {
         Self { lobe, reflectance, maskings: Masking::ALL.into() }
     }
 
-    /// Whether averages are baked as well, as of a range of the family.
+    /// Whether averages are baked as well, which only moments of a range of the family have.
     pub fn has_averages(&self) -> bool {
         self.spec(Quality::Draft, Precision::F32).is_ok_and(|spec| spec.has_averages())
     }
 
-    /// The specification of the tables that cover it.
+    /// The specification of the tables.
     ///
     /// # Errors
     /// [`AlbedoError`] for parameters that describe no ellipsoid.
@@ -77,8 +77,8 @@ pub enum AlbedoVerdict {
     Bake(Vec<usize>),
     /// Its recipe states no `fresnel`.
     NotAsked,
-    /// It comes from a scene of another format, whose albedos together would take long: they must
-    /// be asked for.
+    /// It comes from a scene of another format, whose albedos together would take long and must be
+    /// asked for.
     Imported,
     /// No albedo table covers its σ.
     NotCovered(NotCovered),
@@ -98,21 +98,19 @@ struct Want {
     masking: Masking,
 }
 
-/// More table groups of albedos are not planned: each takes seconds to bake.
+/// Most table groups of albedos in a plan: each takes seconds to bake.
 const MAX_ALBEDOS: usize = 100_000;
 
-/// The table groups that are required so far.
 #[derive(Default)]
 struct Needs {
     all: Vec<RequiredAlbedo>,
     /// The group of a lobe and the index of a reflectance.
     of: HashMap<((Numbers, Option<String>), usize), usize>,
-    /// The groups of the family under each reflectance: few, since `least` makes one of a thousand.
+    /// The groups of the family under each reflectance: few, since `least` joins ranges.
     families: Vec<Vec<usize>>,
 }
 
 impl Needs {
-    /// Requires a lobe under a reflectance.
     fn add(
         &mut self,
         lobe: AlbedoLobe,
@@ -121,7 +119,7 @@ impl Needs {
     ) -> Result<(), NotCovered> {
         let key = (key::of_lobe(&lobe), i);
         if let Some(&found) = self.of.get(&key) {
-            // Both forms in one table group cost little more than one.
+            // Both forms of masking in one table group cost little more than one.
             let maskings = &mut self.all[found].maskings;
             if !maskings.contains(&masking) {
                 maskings.push(masking);
@@ -170,7 +168,7 @@ pub(super) fn required(
     }
     let (albedos, mut verdicts) = wanted(scene, options)?;
     for (verdict, if_asked) in verdicts.iter_mut().zip(if_asked) {
-        // Asking helps only where tables would be baked.
+        // `Imported` means that tables are baked on request.
         if *verdict == AlbedoVerdict::Imported && !matches!(if_asked, AlbedoVerdict::Bake(_)) {
             *verdict = if_asked;
         }
@@ -181,14 +179,14 @@ pub(super) fn required(
 /// Whether all these albedos are estimated to take less than [`AlbedoWish::QUICK`] on one thread.
 fn is_quick(all: &[RequiredAlbedo], quality: Quality) -> bool {
     let mut left = AlbedoWish::QUICK;
-    // What no table can hold is refused where it is asked for.
+    // An albedo that no table can hold is refused where it is asked for.
     all.iter().filter_map(|need| need.spec(quality, Precision::F32).ok()).all(|spec| {
         left -= AlbedoWork::new(&spec).expected(&spec);
         left > 0.0
     })
 }
 
-/// The albedos that a scene is given under a wish.
+/// The albedos of a scene under the wish in `options`.
 fn wanted(scene: &Scene, options: Options) -> Result<Wanted, NotCovered> {
     let wants: Vec<Result<Vec<Want>, AlbedoVerdict>> = scene
         .materials
@@ -202,7 +200,7 @@ fn wanted(scene: &Scene, options: Options) -> Result<Wanted, NotCovered> {
     let indices: HashMap<Numbers, usize> =
         reflectances.iter().enumerate().map(|(i, of)| (key::of_reflectance(of), i)).collect();
     let index = |want: &Want| indices[&key::of_reflectance(&want.reflectance)];
-    // What is asked for under each reflectance and form of masking.
+    // The lobes that are asked for under each reflectance and form of masking.
     let mut asked: Vec<[Vec<&AlbedoLobe>; Masking::ALL.len()]> =
         vec![Default::default(); reflectances.len()];
     for want in all() {
@@ -235,7 +233,7 @@ fn wanted(scene: &Scene, options: Options) -> Result<Wanted, NotCovered> {
     Ok((needs.all, verdicts))
 }
 
-/// The tables that a material asks for, or the reason why it gets none.
+/// The tables that a material asks for, or the verdict if it gets none.
 fn wants(
     material: &Material,
     options: Options,
@@ -256,7 +254,7 @@ fn wants(
     let moments = (!embedded).then_some(Reflectance::Mirror);
     let exact = exact.filter(|reflectance| refracts || reflectance.indices().is_none());
     let wants: Vec<Want> = moments.into_iter().chain(exact).map(of).collect();
-    // The lobe itself too: the default set has no albedos beyond either.
+    // The lobe itself too: the albedos of the default set end at the same σ.
     for lobe in std::iter::once(&lobe).chain(wants.iter().map(|want| &want.lobe)) {
         let sigma = lobe.roughness.x().max;
         if lobe.is_family() && sigma > SIGMA_MAX {
@@ -267,7 +265,7 @@ fn wants(
     Ok(if wants.is_empty() { Err(AlbedoVerdict::Embedded) } else { Ok(wants) })
 }
 
-/// The reason why no albedo is asked for, or `None` if one is.
+/// The verdict if no albedo is asked for.
 fn unasked(material: &Material, options: Options) -> Option<AlbedoVerdict> {
     let native = material.origin.format == Format::Recipe;
     match options.albedo {
@@ -304,17 +302,17 @@ fn least(groups: Vec<Vec<AlbedoLobe>>) -> Vec<AlbedoLobe> {
         let sigma = Roughness::isotropic(a.roughness.x().union(b.roughness.x()));
         AlbedoLobe::family(sigma, a.gamma.union(b.gamma))
     };
-    // One range in the place of several, if it has no more nodes.
+    // One range instead of several, if it has no more nodes.
     let hull_if_cheaper = |lobes: Vec<AlbedoLobe>| -> Vec<AlbedoLobe> {
         let Some(first) = lobes.first() else { return lobes };
         let all = lobes.iter().fold(first.clone(), hull);
         if cost(&all) <= lobes.iter().map(cost).sum() { vec![all] } else { lobes }
     };
-    // Joins all roughnesses of one shape, then all shapes.
+    // Joins all roughnesses of one range of shapes, then all shapes.
     let all = groups.into_iter().flat_map(hull_if_cheaper).collect();
     let all = hull_if_cheaper(all);
-    // A range inside another is covered by it. Comparing each with each takes no longer with more
-    // materials: a hull has fewer nodes than a thousand ranges.
+    // Ranges inside another are left out. Comparing each with each is fast for any number of
+    // materials, since their hull has fewer nodes than a thousand ranges.
     let inside = |i: usize| {
         let holds = |(j, other): (usize, &AlbedoLobe)| {
             i != j && other.contains(&all[i]) && (j < i || !all[i].contains(other))

@@ -1,9 +1,10 @@
-//! What a bake costs, counted before it is done: bytes, and work.
+//! Estimates the bytes and the work of a bake.
 //!
-//! Work is a number of nodes and of places of certificates, times one constant for each kind of
-//! table: the time of a node on one thread of a 2-core x86-64 virtual machine. It depends on the
-//! specification alone, so that every machine divides the needs of a library in the same way.
-//! `cargo run --profile dist -p microfacet-study -- planned` prints it next to measured times.
+//! Work is a number of nodes and of points of certificates, times constants of each kind of table,
+//! the seconds of a node and of a point on one thread of a 2-core x86-64 virtual machine. It
+//! depends on the specification alone, so that every machine divides the needs of a library in the
+//! same way. `cargo run --profile dist -p microfacet-study -- planned` prints it next to measured
+//! times.
 
 use std::collections::HashSet;
 
@@ -25,8 +26,8 @@ use crate::table_spec::{Level, TableSpec};
 /// Bytes and seconds.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Cost {
-    /// Bytes of a safetensors file: right to 4 %, since only the digits of certificates are
-    /// unknown, but for albedos that are refined until their error is met.
+    /// Bytes of a safetensors file, right to 4 %, since only the digits of certificates are
+    /// unknown. The size of albedos that are refined until their error is met is less certain.
     pub bytes: usize,
     /// Time to bake and certify on the current threads, to a factor of about 2.
     pub seconds: f64,
@@ -39,13 +40,13 @@ impl std::iter::Sum for Cost {
     }
 }
 
-/// Seconds on the current threads, from those of one: what a clock would show.
+/// Seconds of wall time on the current threads, from those of one thread.
 pub fn on_threads(seconds: f64) -> f64 {
     seconds / rayon::current_num_threads() as f64
 }
 
-/// Bytes of a set without tables: its names, its recipe, its conventions, and the formulas of the
-/// axes that its tables will have.
+/// Bytes of a set without tables: names, materials, conventions, and the formulas of the axes that
+/// its tables will have.
 pub(crate) fn bare_bytes(provenance: &Provenance) -> usize {
     let has = |convention: &str| provenance.conventions.contains_key(convention);
     let some =
@@ -73,16 +74,16 @@ fn scales(precision: Precision, channels: usize) -> usize {
     if precision == Precision::U16 { 26 * channels } else { 0 }
 }
 
-/// What the tables before one have described for it: a file describes an axis once, and tables of
-/// single materials that have one layout together.
+/// The descriptions that a file has already: it describes an axis once, and tables of single
+/// materials of one layout together.
 ///
-/// The numbers of bytes below are counted in sets of draft quality of all kinds of tables, as
-/// averages over the digits of their figures: kind, columns, certificate, shape and offsets.
+/// The constants in bytes are counted in sets of draft quality of all kinds of tables, as averages
+/// over the digits of their figures: kind, columns, certificate, shape and offsets.
 #[derive(Default)]
 pub(crate) struct Known(HashSet<String>);
 
 impl Known {
-    /// Bytes of those axes that are new.
+    /// Bytes that describe those axes that are new.
     fn axes(&mut self, subject: &Subject, axes: &[Axis]) -> usize {
         let new = stated_axes(subject, axes).into_iter().filter(|json| self.0.insert(json.clone()));
         new.map(|json| escaped(&json) + 1).sum()
@@ -96,8 +97,8 @@ impl Known {
 
     /// Bytes that describe the four tables of a distribution outside the family.
     pub(crate) fn radial(&mut self, label: &str, level: Level, precision: Precision) -> usize {
-        // The name ends in the label, or as many other characters; another number of the same
-        // length stands for the scale and the reach in the axes.
+        // A name is as long as its kind and label. π stands for the scale of an axis, which has as
+        // many digits.
         let subject = Subject::of(LobeSpec::outside(String::new()));
         let scales = scales(precision, Kind::VALUE_AND_SLOPE.len());
         let header = |(kind, axes): &(Kind, Vec<Axis>)| {
@@ -126,7 +127,7 @@ impl Known {
     }
 }
 
-/// Microseconds for a node of a table of visible normals, and for a place of its certificate.
+/// Microseconds for a node of a table of visible normals, and for a point of its certificate.
 fn of_normals(kind: Kind) -> [f64; 2] {
     match kind {
         Kind::Shadowing => [0.2, 0.14],
@@ -135,7 +136,7 @@ fn of_normals(kind: Kind) -> [f64; 2] {
     }
 }
 
-/// How much longer a node of a single shape takes, whose rows share nothing with those of others.
+/// How much longer a node of a single shape takes, whose rows share no work with those of others.
 const ALONE: f64 = 2.5;
 
 fn alone(shapes: &[f64]) -> f64 {
@@ -152,10 +153,10 @@ pub(crate) fn normals_work(spec: &TableSpec) -> [f64; 2] {
 }
 
 /// Microseconds for a node of either slope table of a distribution outside the family (the other
-/// tables are far smaller), and for a normal of the certificate.
+/// tables are far smaller), and for a normal of its certificate.
 const OF_DISTRIBUTIONS: [f64; 2] = [45.0, 20.0];
 
-/// How much longer than these the longest tails take, those of GTR, and the tails of Gauss.
+/// Factors of [`OF_DISTRIBUTIONS`] for the longest tails, those of GTR, and for those of Gauss.
 const OF_LONG_TAILS: f64 = 1.9;
 const OF_SHORT_TAILS: f64 = 1.25;
 
@@ -177,12 +178,12 @@ pub(crate) fn radial_work(distribution: &Distribution, level: Level) -> [f64; 2]
     [node * nodes as f64, normal * radial::POINTS as f64]
 }
 
-/// Seconds of one thread to measure the error of a table other than of directional albedos at one
-/// place: longer for the shapes or distributions that take longest.
+/// Seconds of one thread to measure the error of a table at one point, for the shapes or
+/// distributions that take longest. Not for directional albedos.
 pub fn point_seconds(table: &Table) -> f64 {
     let of_distributions = 1e-6 * OF_LONG_TAILS * OF_DISTRIBUTIONS[1];
     match table.kind {
-        // Two lookups, of which one integrates over the views.
+        // Two lookups, one of which integrates over the views.
         Kind::AlbedoAverage => 40e-6,
         Kind::RadialShadowing | Kind::RadialDensity | Kind::RadialSlope => of_distributions,
         Kind::RadialConditional => radial::SLANTED * of_distributions,
@@ -191,12 +192,12 @@ pub fn point_seconds(table: &Table) -> f64 {
 }
 
 /// Microseconds for a node of albedo tables under one reflectance, and the doublings of an axis
-/// that are expected before the error is met: the rows of `planned` are off by at most a factor
-/// of 2.1 (drafts of a lobe rough one way), but for the tilted heavy lobe, which takes a fifth, as
-/// draft a thirteenth.
+/// that are expected before the error is met. The rows of `planned` are off by at most a factor of
+/// 2.1 (drafts of a lobe rough one way), except for the tilted heavy lobe, which takes a fifth of
+/// the estimate, and a thirteenth as draft.
 fn of_albedos(spec: &AlbedoSpec) -> [f64; 2] {
     let lobe = &spec.lobe;
-    // Rays are longer and less smooth where tails are longer.
+    // Quadrature takes longer where tails are longer.
     let s = 0.5 * (s_of_gamma(lobe.gamma.min) + s_of_gamma(lobe.gamma.max));
     let tails = 1.0 + s;
     match lobe.form() {
@@ -205,15 +206,15 @@ fn of_albedos(spec: &AlbedoSpec) -> [f64; 2] {
         LobeForm::StudentT => {
             let [x, y] = lobe.sigma();
             let (rough, elongation) = (x.max(y), x.max(y) / x.min(y));
-            // Each factor of 3.3 takes another doubling of the azimuths, and the 17 views of a
-            // draft are too few for a lobe that is rough one way and narrow the other.
+            // Each factor of 3.3 in elongation takes another doubling of the azimuths, and the 17
+            // views of a draft are too few for a lobe that is rough one way and narrow the other.
             let azimuths = (libm::log(elongation) / 1.2 - 0.75).clamp(0.0, 2.0);
             let is_uneven = rough >= 0.3 && elongation > 3.5;
             let views = if is_uneven { libm::log10(spec.tolerance / 1e-6) } else { 0.0 };
             [300.0 * tails, azimuths + views.clamp(0.0, 1.0)]
         }
-        // Of σ = 0.3 and 0.1 (0.2 at γ = 3) tilted by 13°, a table took 17 s at γ = ∞, 118 s
-        // at γ = 3 and 31 s at γ = 1.52, where fewer doublings were needed.
+        // A table of σ = 0.3 and 0.1 (0.2 at γ = 3) tilted by 13° took 17 s at γ = ∞, 118 s at γ =
+        // 3 and 31 s at γ = 1.52, where fewer doublings were needed.
         LobeForm::Ellipsoid => [1700.0 * (1.0 + 8.0 * s.min(0.5)), 1.5],
         LobeForm::Distribution => {
             let has_long_tails = lobe.distribution.as_ref().is_some_and(has_long_tails);
@@ -228,26 +229,26 @@ pub(crate) fn growth(spec: &AlbedoSpec) -> f64 {
 }
 
 fn node_seconds(spec: &AlbedoSpec) -> f64 {
-    // A decade of accuracy takes 1.4 times as long; three indices with three channels each 1.8.
+    // A decade of accuracy takes 1.4 times as long; the three indices of a conductor 1.8 times.
     let accurate = libm::pow(1e-6 / spec.tolerance, 0.15);
     let metal = matches!(spec.reflectance, Reflectance::Conductor { .. });
     1e-6 * of_albedos(spec)[0] * accurate * if metal { 1.8 } else { 1.0 }
 }
 
-/// Seconds of one thread for a place of the certificate of albedo tables, of a shape that was
-/// prepared: it is a decade more accurate than a node.
+/// Seconds of one thread for a point of the certificate of albedo tables, which is a decade more
+/// accurate than a node, for a shape that is prepared already.
 pub fn place_seconds(spec: &AlbedoSpec) -> f64 {
     1.6 * node_seconds(spec)
 }
 
-/// How much longer places of a range of shapes take along edges and uphill: each has a shape of its
-/// own, which takes longer to prepare than a view of it.
+/// How much longer points along edges and of climbs take for a range of shapes: each has a shape of
+/// its own, which takes longer to prepare than to integrate at one view.
 const OF_RANGE: f64 = 5.0;
 
-/// The seconds of one thread for albedo tables, by what they are spent on.
+/// The seconds of one thread for albedo tables.
 pub(crate) struct AlbedoWork {
     pub(crate) nodes: f64,
-    /// The certificate's places inside, along edges and creases, and on the way uphill.
+    /// The certificate's points inside, along edges and creases, and of climbs.
     pub(crate) interior: f64,
     pub(crate) edges: f64,
     pub(crate) climbs: f64,
@@ -261,7 +262,7 @@ impl AlbedoWork {
         let fresh = if is_range { OF_RANGE } else { 1.0 };
         let edges = points::middle_count(spec) + points::crease_count(spec);
         let edges = (edges + points::smooth(spec).len()) as f64;
-        // Climbs go along axes of more than one node.
+        // An axis of one node is not climbed along.
         let moving = spec.axes.iter().filter(|axis| axis.len() > 1).count();
         let climbed = climbed_count(spec) * spec.maskings.len() * moving / spec.axes.len();
         Self {
@@ -272,7 +273,7 @@ impl AlbedoWork {
         }
     }
 
-    /// The part that each doubling repeats.
+    /// The seconds of work that each doubling repeats.
     pub(crate) fn doubling(&self) -> f64 {
         self.nodes + self.edges + self.climbs
     }
@@ -283,7 +284,6 @@ impl AlbedoWork {
         (growth(spec) - 1.0) * self.doubling()
     }
 
-    /// All that is expected.
     pub(crate) fn expected(&self, spec: &AlbedoSpec) -> f64 {
         self.interior + self.doubling() + self.ahead(spec)
     }

@@ -1,5 +1,4 @@
-//! What scenes are compared by, as keys of hash maps: planning compares each part of a material
-//! with those of all others.
+//! Keys of hash maps by which planning compares the lobes and reflectances of all materials.
 
 use std::collections::HashSet;
 use std::hash::Hash;
@@ -10,10 +9,10 @@ use ordered_float::OrderedFloat;
 use crate::bake::albedo::AlbedoLobe;
 use crate::distribution::Distribution;
 
-/// The numbers of a part of a scene, in which −0 equals 0; each form has another number of them.
+/// The numbers of a lobe or reflectance, in which −0 equals 0. Every kind of reflectance has
+/// another count of numbers, so their keys differ.
 pub(super) type Numbers = Vec<OrderedFloat<f64>>;
 
-/// Numbers as a key.
 pub(super) fn of(numbers: &[f64]) -> Numbers {
     numbers.iter().copied().map(OrderedFloat).collect()
 }
@@ -38,7 +37,7 @@ pub(super) fn of_reflectance(reflectance: &Reflectance) -> Numbers {
     }
 }
 
-/// The values of which each is the first of its key, in order.
+/// The first value of each key, in order.
 pub(super) fn distinct<T: Copy, K: Eq + Hash>(
     values: impl Iterator<Item = T>,
     key: impl Fn(&T) -> K,

@@ -1,4 +1,4 @@
-//! Plans what to bake for a scene: pure functions, and as few tables as possible.
+//! Plans the tables to bake for a scene, as few as possible.
 //!
 //! Tables of visible normals have no σ axis (slopes are divided by σ before a lookup), so a
 //! material requires only its shape γ: one γ is a slice, 1D for masking and the slope across, 2D
@@ -27,7 +27,7 @@ use microfacet_tables::SIGMA_MAX;
 /// γ of GGX.
 const GGX: f64 = 2.0;
 
-/// What the renderer has at run time already, so that it need not be baked.
+/// Options of a plan: what the renderer has at run time already, and which albedos to bake.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Options {
     /// Tabulate GGX as well, for a renderer without its closed forms.
@@ -41,11 +41,11 @@ pub struct Options {
     /// The quality at which [`AlbedoWish::Auto`] estimates how long albedos take.
     pub quality: Quality,
     /// Refuse a scene of another format if no table covers one of its materials, as a recipe is
-    /// refused; else that material alone is left out.
+    /// refused; otherwise only that material is left out.
     pub strict: bool,
 }
 
-/// What the plan decides on a material.
+/// The decision of the plan on a material.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
     /// Tables are baked for it: an index into [`Plan::shapes`].
@@ -64,8 +64,8 @@ pub enum Verdict {
         /// Index of the other material.
         of_material: usize,
     },
-    /// GGX: D, G1 and visible normals have closed forms, which the sampler crate uses where there
-    /// is no table.
+    /// GGX, of which D, G1 and visible normals have closed forms, which the sampler crate uses
+    /// where there is no table.
     ClosedForm,
     /// It is not a Student-t lobe: tables of its own are baked for it.
     Own,
@@ -89,7 +89,7 @@ impl Verdict {
     }
 }
 
-/// What is to be baked for a scene, with the reason for each material.
+/// The tables to bake for a scene, with a verdict for each material.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plan {
     /// Disjoint required shapes, from Beckmann to heavy tails: the ranges first, then the single
@@ -103,9 +103,9 @@ pub struct Plan {
     pub albedos: Vec<RequiredAlbedo>,
     /// One verdict on the albedo of each material, in order.
     pub albedo_verdicts: Vec<AlbedoVerdict>,
-    /// The albedos that [`AlbedoWish::Auto`] leaves out since they would take long.
+    /// The albedos that [`AlbedoWish::Auto`] leaves out because they would take long.
     pub offered: Vec<RequiredAlbedo>,
-    /// The scene's materials, as the set will list them; empty for the general set.
+    /// The scene's materials as the set lists them; empty for the general set.
     pub materials: Vec<MaterialEntry>,
 }
 
@@ -122,9 +122,9 @@ impl Plan {
     /// The plan of a scene.
     ///
     /// # Errors
-    /// [`NotCovered`] for more albedos than are planned. For a γ that no table covers, a σ that no
-    /// lobe can have, or a σ that no albedo table covers if an albedo is asked for: if the material
-    /// is of a recipe, or with [`Options::strict`].
+    /// [`NotCovered`] for more albedos than are planned; also, if the material is of a recipe or
+    /// with [`Options::strict`], for a γ that no table covers, a σ that no lobe can have, or a σ
+    /// that no albedo table covers if an albedo is asked for.
     pub fn new(scene: &Scene, options: Options) -> Result<Self, NotCovered> {
         let wants: Vec<Result<Interval, Verdict>> = scene
             .materials
@@ -138,8 +138,8 @@ impl Plan {
         let find = |want: &Interval| {
             required_shapes::find(&needs, *want).expect("the needs cover every want")
         };
-        // Each range is baked for the first material that asks for exactly it, else for the first
-        // inside.
+        // A range is baked for the first material that asks for exactly that range, else for the
+        // first inside.
         let mut owner: Vec<Option<usize>> = vec![None; needs.len()];
         for exact in [true, false] {
             for (i, want) in wants.iter().enumerate() {
@@ -180,7 +180,7 @@ impl Plan {
         })
     }
 
-    /// The materials that nothing covers, each with the reason: of them, and of their albedos.
+    /// Why materials, and the albedos of materials, are not covered.
     pub fn not_covered(&self) -> impl Iterator<Item = &NotCovered> {
         let lobes = self.verdicts.iter().filter_map(|verdict| match verdict {
             Verdict::NotCovered(why) => Some(why),
@@ -219,7 +219,7 @@ fn want(material: &Material, options: Options) -> Result<Result<Interval, Verdic
         return Ok(Err(Verdict::Own));
     }
     let gamma = material.lobe.gamma;
-    // Ellipsoids read tables at every γ.
+    // Ellipsoids have no closed form at γ = 2 in the sampler crate, which reads tables for them.
     if gamma == Interval::point(GGX) && !options.tabulate_ggx && material.lobe.theta.is_none() {
         return Ok(Err(Verdict::ClosedForm));
     }
@@ -240,8 +240,8 @@ fn not_covered(material: &Material) -> Option<NotCovered> {
     outside.then(|| NotCovered::Gamma { material: name(), gamma })
 }
 
-/// The reason itself, if the rest of the scene is planned without the material. A recipe asks for
-/// each of its materials; a scene of another format has them anyway.
+/// The reason as a value if the rest of the scene is planned without the material, as an error if
+/// it is not: a recipe asks for each of its materials, a scene of another format does not.
 fn refusal(
     material: &Material,
     options: Options,
@@ -251,37 +251,36 @@ fn refusal(
     if refuses { Err(why) } else { Ok(why) }
 }
 
-/// The distributions outside the Student-t family, in order and without repetition.
 fn distributions(scene: &Scene) -> Vec<Distribution> {
     let tabulated = scene.materials.iter().filter(|material| is_tabulated(material));
     let all = tabulated.filter_map(|material| material.lobe.distribution.as_ref());
     key::distinct(all, |all| all.label()).into_iter().cloned().collect()
 }
 
-/// Whether there are microfacets at any point at all.
+/// Whether there are microfacets at any point of the surface.
 fn is_rough(material: &Material) -> bool {
     let [least, _] = lobe_sigmas(material);
     let [x, y] = material.lobe.sigmas().map(|sigma| sigma.max);
     x > 0.0 && y > 0.0 && x.max(y) >= least
 }
 
-/// The smallest and the largest σ that a lobe can have. A tilted lobe is held to it by its matrix
-/// alone.
+/// The smallest and the largest σ that a lobe can have.
 fn lobe_sigmas(material: &Material) -> [f64; 2] {
     if material.lobe.theta.is_some() { Ellipsoid::SIGMAS } else { StudentT::SIGMAS }
 }
 
-/// Whether a set lists the material: if it is in use, and what it asks for can be had.
+/// Whether a set lists the material: if it is in use, and covered by tables or closed forms, or
+/// smooth.
 fn is_listed(material: &Material) -> bool {
     material.used && (!is_rough(material) || not_covered(material).is_none())
 }
 
-/// Whether tables may be baked for the material: if it is listed, and rough.
+/// Whether tables may be baked for the material.
 fn is_tabulated(material: &Material) -> bool {
     is_listed(material) && is_rough(material)
 }
 
-/// A material in the terms of a set, where one without microfacets has σ = 0.
+/// A material as a set lists it: σ is 0 if it has no microfacets.
 pub fn entry(material: &Material) -> MaterialEntry {
     let entry = material.entry();
     if is_rough(material) {
@@ -307,7 +306,7 @@ pub enum NotCovered {
         material: String,
         /// Its largest σ along that axis.
         sigma: f64,
-        /// What a lobe can have.
+        /// The σ that a lobe can have.
         range: [f64; 2],
     },
     /// An albedo for σ above [`SIGMA_MAX`].
@@ -319,7 +318,7 @@ pub enum NotCovered {
     },
     /// More tables of albedos than are planned.
     Albedos {
-        /// How many are.
+        /// The largest number that is planned.
         most: usize,
     },
 }
@@ -335,7 +334,7 @@ impl NotCovered {
         }
     }
 
-    /// Why it is not covered, and what to do about it, without the name of the material.
+    /// Why it is not covered, and the remedy, without the name of the material.
     pub fn reason(&self) -> String {
         match self {
             Self::Gamma { gamma, .. } => format!(

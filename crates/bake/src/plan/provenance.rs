@@ -1,4 +1,4 @@
-//! What a set states about itself: origin, licence, and the meaning of its tables.
+//! The provenance of a set: origin, licence, and conventions.
 
 use microfacet_tables::Provenance;
 
@@ -6,24 +6,22 @@ use super::{Plan, RequiredAlbedo};
 use crate::bake::NUMERICS;
 use crate::table_spec::GAMMA_WHOLE;
 
-/// What a set holds, as far as conventions differ.
+/// The condition under which a set states a convention.
 #[derive(Clone, Copy, PartialEq)]
 enum If {
     Always,
     /// Masking and visible normals.
     Normals,
-    /// Slopes without their heavy part.
     Peeled,
     Albedos,
-    /// Averages, which albedos of a range have.
     Averages,
     /// Albedos of single lobes.
     Lobes,
-    /// Materials that are left to closed forms.
+    /// Materials that no table covers, but closed forms do.
     ClosedForms,
 }
 
-/// The conventions that a reader could get wrong, in short: `docs/format.md` has them at length.
+/// Conventions that readers need, in short; `docs/format.md` has them at length.
 const CONVENTIONS: [(If, &str, &str); 14] = [
     (If::Always, "placement", "values sit at the nodes of the axes, not at cell centres"),
     (

@@ -7,7 +7,7 @@ use crate::certify::certificate::ALL_SHAPES;
 use crate::table_spec::{GAMMA_MIN, GAMMA_WHOLE, Quality, SEAM, ShapeAxis, TableSpec, general_set};
 use microfacet_tables::joined_name;
 
-/// A γ, or a range of γ, that tables are to cover.
+/// A γ, or a range of γ, that tables must cover.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct RequiredShapes {
     gamma: Interval,
@@ -47,8 +47,8 @@ impl RequiredShapes {
     }
 
     /// The specifications of the tables that cover it, cut out of a general set: slices for one
-    /// shape, else sub-ranges with the general spacing, so that the values in between are the same
-    /// bits.
+    /// shape, else sub-ranges with the nodes of the general set, so that values in between are the
+    /// same bits.
     pub fn specs(&self, general: &[TableSpec]) -> Vec<TableSpec> {
         general.iter().filter_map(|spec| self.cut(spec)).collect()
     }
@@ -59,14 +59,14 @@ impl RequiredShapes {
         let [low, high] = spec.shapes.ends();
         // At the seam, γ = 1.8, `visible_slope` is preferred to `visible_slope_peeled`.
         let after_seam = low >= s_of_gamma(GAMMA_WHOLE);
-        // A range within rounding is one shape, from which the rest is not told apart.
+        // A range within rounding is one shape.
         let to = if to - from <= SEAM * to.min(1.0) { from } else { to };
         let covers = [from.max(low), to.min(high)];
         let shapes = if from == to {
             let here = if after_seam { from > low } else { from >= low } && from <= high;
             here.then(|| ShapeAxis { nodes: vec![from], interpolation: Interpolation::Nodes })
         } else {
-            // What is closer to the seam than rounding is read from the tables before it.
+            // Shapes closer to the seam than rounding are read from the tables before it.
             let beyond = if after_seam { low + SEAM } else { low };
             (to > beyond && from < high).then(|| spec.shapes.part(covers[0], covers[1]))
         };
@@ -75,7 +75,7 @@ impl RequiredShapes {
     }
 }
 
-/// The required shapes that cover all `wants`, disjoint: overlapping ranges become one, and single
+/// Disjoint required shapes that cover all `wants`: overlapping ranges become one, and single
 /// shapes inside a range are dropped. The ranges come first; ranges and single shapes each descend
 /// in γ.
 pub(super) fn disjoint(wants: impl Iterator<Item = Interval>) -> Vec<RequiredShapes> {
@@ -97,7 +97,7 @@ pub(super) fn disjoint(wants: impl Iterator<Item = Interval>) -> Vec<RequiredSha
     needs
 }
 
-/// The range over all single shapes, if its tables are smaller than all those slices.
+/// The range over all single shapes, if its tables are smaller than the slices of these shapes.
 pub(super) fn cheaper_range(needs: &[RequiredShapes]) -> Option<Interval> {
     let points: Vec<&RequiredShapes> = needs.iter().filter(|need| need.gamma.is_point()).collect();
     let hull = points.iter().map(|need| need.gamma).reduce(Interval::union)?;
@@ -108,13 +108,13 @@ pub(super) fn cheaper_range(needs: &[RequiredShapes]) -> Option<Interval> {
     (bytes(&RequiredShapes { gamma: hull }) < slices).then_some(hull)
 }
 
-/// Which of the required shapes that [`disjoint`] made covers `want`.
+/// The index of the required shapes, as [`disjoint`] makes them, that cover `want`.
 pub(super) fn find(needs: &[RequiredShapes], want: Interval) -> Option<usize> {
     let ranges = needs.partition_point(|need| !need.gamma.is_point());
     holder(&needs[..ranges], want).or_else(|| holder(&needs[ranges..], want).map(|i| ranges + i))
 }
 
-/// Which of descending, disjoint required shapes contains `want`.
+/// The index of the descending, disjoint required shapes that contain `want`.
 fn holder(needs: &[RequiredShapes], want: Interval) -> Option<usize> {
     // The first that reaches down to it.
     let i = needs.partition_point(|need| need.gamma.min > want.min);

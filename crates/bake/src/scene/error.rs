@@ -1,15 +1,15 @@
-//! Places in a scene description, and its errors.
+//! Positions in a scene description, and its errors.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::{fmt, io};
 
-/// A place in a scene description.
+/// A position in a scene description.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Place {
     /// The path of the file, as it was given.
     pub file: Arc<Path>,
-    /// The line, from 1; `None` where the syntax keeps none (glTF) or the place is the whole file.
+    /// The line, from 1; `None` where the parser keeps none (glTF) and for a whole file.
     pub line: Option<u32>,
     /// The column in characters, from 1.
     pub column: Option<u32>,
@@ -21,58 +21,56 @@ impl Place {
         Self { file: file.into(), line: None, column: None }
     }
 
-    /// Something impossible, said here.
+    /// The error of something impossible at this position.
     pub fn invalid(&self, message: impl Into<String>) -> SceneError {
         SceneError { place: self.clone(), kind: SceneErrorKind::Invalid(message.into()) }
     }
 
-    /// Another kind of document, which begins here.
+    /// The error of another kind of document, which begins at this position.
     pub fn foreign(&self, message: impl Into<String>) -> SceneError {
         SceneError { place: self.clone(), kind: SceneErrorKind::Foreign(message.into()) }
     }
 
-    /// More than is read.
+    /// The error of more than is read.
     pub fn too_large(&self, message: impl Into<String>) -> SceneError {
         SceneError { place: self.clone(), kind: SceneErrorKind::TooLarge(message.into()) }
     }
 
-    /// What the grammar of the file does not allow.
+    /// The error of a text that does not follow the grammar of the format.
     pub fn syntax(&self, message: impl Into<String>) -> SceneError {
         SceneError { place: self.clone(), kind: SceneErrorKind::Syntax(message.into()) }
     }
 
-    /// A file that cannot be read.
+    /// The error of a file that cannot be read.
     pub fn io(&self, error: io::Error) -> SceneError {
         SceneError { place: self.clone(), kind: SceneErrorKind::Io(error) }
     }
 }
 
-/// Turns byte offsets in a text into places.
-///
-/// Lines end as they do in an editor: with a line feed, a carriage return, or both.
+/// Turns byte offsets in a text into positions. A line ends with a line feed, a carriage return, or
+/// both.
 pub struct Lines<'a> {
     file: Arc<Path>,
     text: &'a [u8],
-    /// What is before each block of [`BLOCK`] bytes. A text may be one line with a million elements
-    /// in it, or nothing but ends of lines.
+    /// The counts before each block of [`BLOCK`] bytes, since a text may be one very long line, or
+    /// nothing but ends of lines.
     blocks: Vec<Before>,
 }
 
-/// Bytes of a block of [`Lines`].
 const BLOCK: usize = 1 << 10;
 
-/// What is before a block.
+/// Counts of the text before an offset.
 #[derive(Clone, Copy, Default)]
 struct Before {
-    /// Characters that begin.
+    /// Characters that begin before it.
     characters: usize,
-    /// Lines that end, and where the next begins.
+    /// Lines that end before it, and the offset at which the next begins.
     lines: usize,
     start: usize,
 }
 
 impl<'a> Lines<'a> {
-    /// Of a text in a file.
+    /// For the text of a file.
     pub fn new(file: &Path, text: &'a [u8]) -> Self {
         let mut lines = Self { file: file.into(), text, blocks: vec![Before::default()] };
         for end in (BLOCK..=text.len()).step_by(BLOCK) {
@@ -81,7 +79,7 @@ impl<'a> Lines<'a> {
         lines
     }
 
-    /// The place of a byte.
+    /// The position of a byte.
     pub fn place(&self, offset: usize) -> Place {
         let offset = offset.min(self.text.len());
         let Before { characters, lines, start } = self.before(offset);
@@ -93,15 +91,15 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// The place of a parser that counts lines from 1 by their line feeds alone, and then bytes
-    /// from 0.
+    /// The position that a parser states as a line, counted from 1 by line feeds alone, and a byte
+    /// in that line, from 0.
     pub fn after_feeds(&self, line: usize, bytes: usize) -> Place {
         let lines = self.text.split_inclusive(|&byte| byte == b'\n');
         let start: usize = lines.take(line.saturating_sub(1)).map(<[u8]>::len).sum();
         self.place(start + bytes)
     }
 
-    /// What is before an offset, counted from the last block that is known.
+    /// The counts before an offset, continued from those of the last known block.
     fn before(&self, offset: usize) -> Before {
         let block = (offset / BLOCK).min(self.blocks.len() - 1);
         let Before { mut characters, mut lines, mut start } = self.blocks[block];
@@ -120,7 +118,7 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// The characters that begin in some bytes of UTF-8.
+/// The number of characters that begin in some bytes of UTF-8.
 pub fn characters(bytes: &[u8]) -> usize {
     bytes.iter().filter(|&&byte| byte & 0xc0 != 0x80).count()
 }
@@ -137,7 +135,7 @@ impl fmt::Display for Place {
 
 /// Why a scene description was refused.
 pub struct SceneError {
-    /// The place of the error.
+    /// The position of the error.
     pub place: Place,
     /// The cause.
     pub kind: SceneErrorKind,
@@ -150,7 +148,7 @@ impl fmt::Display for SceneError {
 }
 
 impl std::error::Error for SceneError {
-    /// The cause of a file that could not be read: the kind is part of the message already.
+    /// The cause if a file could not be read; other kinds have their cause in the message.
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match &self.kind {
             SceneErrorKind::Io(why) => Some(why),
@@ -171,8 +169,8 @@ pub enum SceneErrorKind {
     /// The text does not follow the format's grammar.
     #[error("{0}")]
     Syntax(String),
-    /// The text is well formed and says something impossible: a value out of range, a name that
-    /// is not defined, files that include each other.
+    /// The text is well formed but impossible: a value out of range, a name that is not defined,
+    /// files that include each other.
     #[error("{0}")]
     Invalid(String),
     /// The text is another kind of document than a scene: of XML with another root, for instance.
@@ -203,7 +201,8 @@ fn unknown_extension(extension: &Path) -> String {
     )
 }
 
-/// Names that other programs and papers give to a parameter, its name here, and how they relate.
+/// Names that other programs and papers give to a parameter, the key of a recipe, and their
+/// relation.
 const SYNONYMS: [(&[&str], &str, &str); 5] = [
     (
         &["alpha", "m", "rough", "roughness"],
@@ -217,16 +216,15 @@ const SYNONYMS: [(&[&str], &str, &str); 5] = [
     (&["exponent", "shininess"], "n", "n is the exponent of the cosine"),
 ];
 
-/// The text "; did you mean `x`?" for the key that `word` is another name of, with how they relate,
-/// or else for the closest key, if one is close enough; else empty.
+/// The text "; did you mean `x`?" for the key of which `word` is another name, with their relation,
+/// else for the closest key, if one is close enough; else empty.
 #[must_use]
 pub fn did_you_mean_key(word: &str, keys: &[&str]) -> String {
     synonym(word, keys).unwrap_or_else(|| did_you_mean(word, keys))
 }
 
-/// The hint for a word that is another name of a key, if it is one.
-///
-/// The axis of `alpha_x` or `roughness_v` is kept where the keys have it.
+/// The hint for a word that is another name of a key; the axis of `alpha_x` or `roughness_v` is
+/// kept where the keys have it.
 fn synonym(word: &str, keys: &[&str]) -> Option<String> {
     let word = word.to_lowercase();
     let axes = [("_x", "_x"), ("_y", "_y"), ("_u", "_x"), ("_v", "_y")];
@@ -241,15 +239,14 @@ fn synonym(word: &str, keys: &[&str]) -> Option<String> {
     SYNONYMS.iter().find_map(of)
 }
 
-/// Candidates of one word, of which more are left out.
+/// Number of candidates that are compared with one word; more are left out.
 pub const MOST_CANDIDATES: usize = 10_000;
 
 /// The text "; did you mean `x`?" for the candidate closest to `word`, if one is close enough; else
 /// empty.
 ///
-/// Close enough is one edit in three letters; a transposition counts as one edit. The time grows
-/// with the product of the lengths: words longer than names, and candidates after many, are left
-/// out.
+/// Close enough is one edit in three letters; a transposition counts as one edit. Since the time
+/// grows with the product of the lengths, words and candidates of more than 64 bytes are left out.
 pub fn did_you_mean(word: &str, candidates: &[&str]) -> String {
     let distance = |candidate: &str| {
         strsim::damerau_levenshtein(&word.to_lowercase(), &candidate.to_lowercase())
@@ -334,7 +331,7 @@ mod tests {
         // Other distributions have parameters of their own.
         assert!(did_you_mean_key("roughness", &["name", "c"]).contains("`c`? c is the alpha"));
         assert!(did_you_mean_key("exponent", &["name", "n"]).contains("`n`?"));
-        // Where there is none, nothing stands for it.
+        // `sigma`, the key that `roughness` stands for, is not among the keys.
         assert_eq!(did_you_mean_key("roughness", &["name", "sigma0"]), "");
     }
 

@@ -28,7 +28,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// The format that the name of a file says it has; `None` if its extension is of none.
+    /// The format by the extension of a file's name; `None` if it is of none.
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
         let name = path.file_name()?.to_string_lossy().to_lowercase();
@@ -57,14 +57,15 @@ impl fmt::Display for Format {
     }
 }
 
-/// Where a material comes from.
+/// The source of a material.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Origin {
     /// The format.
     pub format: Format,
-    /// The place of its definition.
+    /// The position of its definition.
     pub place: Place,
-    /// The lobe of a layered material, for instance "coat"; `None` for the only or main one.
+    /// The name of a lobe of a layered material, for instance "coat"; `None` for the only or main
+    /// lobe.
     pub lobe: Option<&'static str>,
 }
 
@@ -77,11 +78,11 @@ pub struct Material {
     pub name: String,
     /// The lobe.
     pub lobe: LobeSpec<Distribution>,
-    /// The facets' reflectance; `None` if the scene states none, or none of these forms.
+    /// The facets' reflectance; `None` if the scene states none, or none that [`Reflectance`] has.
     pub fresnel: Option<Reflectance>,
     /// The form of G2 that the scene's renderer uses; `None` where the format leaves it open.
     pub masking: Option<Masking>,
-    /// Where it was described.
+    /// The source of its description.
     pub origin: Origin,
     /// Whether any geometry uses it; true if that cannot be known.
     pub used: bool,
@@ -115,10 +116,10 @@ pub struct Ignored {
     pub kind: String,
     /// Why it was left out.
     pub reason: Cow<'static, str>,
-    /// Whether it was understood: then there is nothing to bake for it. If not, it is of a kind
-    /// that is not known here, or says something impossible, and it may well have microfacets.
+    /// Whether it was understood, so that there is nothing to bake for it. If not, it is of an
+    /// unknown kind or has an impossible value, and may have microfacets.
     pub understood: bool,
-    /// Where it was described.
+    /// The position of its description.
     pub place: Place,
 }
 

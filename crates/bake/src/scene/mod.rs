@@ -1,7 +1,5 @@
-//! The microfacet lobes of a scene, whatever file describes it; and the native description, the
-//! recipe.
-//!
-//! A table set is planned from this list alone. The crate `microfacet-scene` reads other formats.
+//! The microfacet lobes of a scene, from which a table set is planned, and the native format of
+//! scenes, the recipe. The crate `microfacet-scene` reads other formats.
 
 mod error;
 mod limits;
@@ -33,7 +31,7 @@ pub struct Scene {
     /// links resolved.
     pub included: Vec<PathBuf>,
     /// Assumptions made where the scene could not be read in full, and values that look like a
-    /// mistake, each with its place.
+    /// mistake, each with its position in the file.
     pub warnings: Vec<String>,
 }
 
@@ -71,17 +69,17 @@ impl Scene {
         recipe::load(file)
     }
 
-    /// What makes it uncertain that all materials are there and right, each with its place: the
-    /// warnings, then the materials that were not understood.
+    /// The warnings, then the materials that were not understood, each with its position in the
+    /// file.
     pub fn doubts(&self) -> impl Iterator<Item = String> {
         let unknown = self.ignored.iter().filter(|ignored| !ignored.understood);
         self.warnings.iter().cloned().chain(unknown.map(Ignored::to_string))
     }
 
-    /// The native recipe of the materials in use: the canonical form of this scene.
+    /// The native recipe of the materials in use.
     ///
-    /// It reads back to materials that [are the same](Material::asks_the_same), bit for bit. A
-    /// scene that uses no material gives an empty text, which is not a valid recipe.
+    /// It reads back to [the same](Material::asks_the_same) materials, bit for bit. A scene that
+    /// uses no material gives an empty text, which is not a valid recipe.
     #[must_use]
     pub fn to_recipe(&self) -> String {
         let used = self.materials.iter().filter(|material| material.used);
@@ -89,7 +87,7 @@ impl Scene {
     }
 }
 
-/// The native recipe of the materials that a set lists: baked, it makes the same set.
+/// The native recipe of the materials that a set lists, from which the same set can be baked.
 pub fn recipe_of(materials: &[MaterialEntry]) -> String {
     recipe::write(materials)
 }

@@ -1,4 +1,4 @@
-//! Names of materials are unique.
+//! Makes the names of materials unique.
 
 use std::collections::HashMap;
 

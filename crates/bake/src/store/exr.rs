@@ -20,16 +20,13 @@ use microfacet_tables::{
 
 use crate::input::MAX_TABLES;
 
-/// The attribute that holds the description.
 const ATTRIBUTE: &str = "microfacet";
 
-/// How pixels are stored; nothing else is read.
+/// The encoding of pixels; no other is read.
 const ENCODING: Encoding = Encoding::SMALL_LOSSLESS;
 
-/// A part of an image.
 type Part = Layer<AnyChannels<FlatSamples>>;
 
-/// EXR channel name of a table's channel.
 fn channel_name(channel: &str) -> &str {
     if channel == "value" { "Y" } else { channel }
 }
@@ -67,8 +64,8 @@ fn part_of(table: &Table) -> Part {
     Layer::new((width, height), named(&table.name), ENCODING, channels)
 }
 
-/// Encodes channels in 32 bits, or in 16, as an image, compressed without loss. A description is
-/// the string attribute `microfacet`.
+/// Encodes channels in 32 bits, or in 16 if `half`, as an image of one part, compressed without
+/// loss. The description is its string attribute `microfacet`.
 ///
 /// # Errors
 /// A message if it cannot be written.
@@ -101,7 +98,8 @@ fn flat(half: bool, samples: impl Iterator<Item = f32>) -> FlatSamples {
     }
 }
 
-/// The attributes of a part of this name: what follows a measured file may be named in any script.
+/// The attributes of a part of this name. A table of a measured distribution has the name of a
+/// file, which may have any characters.
 fn named(name: &str) -> LayerAttributes {
     LayerAttributes::named(Text::new_or_panic(ascii(name)))
 }
@@ -113,7 +111,8 @@ fn describe_with(attributes: &mut LayerAttributes, text: &str) -> Result<(), Str
     Ok(())
 }
 
-/// Samples that are no intensities of light: a lossy compressor should quantise them evenly.
+/// A channel whose samples are no intensities of light, which a lossy compressor should quantise
+/// evenly.
 fn channel_of(name: &str, samples: FlatSamples) -> AnyChannel<FlatSamples> {
     AnyChannel {
         name: Text::new_or_panic(name),
@@ -123,7 +122,7 @@ fn channel_of(name: &str, samples: FlatSamples) -> AnyChannel<FlatSamples> {
     }
 }
 
-/// The bytes of an image; all parts share a display window, which is the largest of them.
+/// The bytes of an image; all parts share a display window of the largest width and height.
 fn write(parts: Vec<Part>) -> Result<Vec<u8>, String> {
     let largest = |side: fn(&Part) -> usize| parts.iter().map(side).max().unwrap_or_default();
     let window = (largest(|part| part.size.width()), largest(|part| part.size.height()));
@@ -185,7 +184,7 @@ fn values(name: &str, channels: &[String], part: &Part) -> Result<Vec<f32>, Stri
     if of != ascii(name) {
         return Err(format!("OpenEXR: a part named `{of}` in the place of the table `{name}`"));
     }
-    // Every channel is one of the table: a list that repeats one could ask for any memory.
+    // A list that repeats a channel could ask for any amount of memory.
     if channels.is_empty() || channels.len() != part.channel_data.list.len() {
         return Err("the channels are not those of the description".into());
     }
@@ -204,7 +203,7 @@ fn values(name: &str, channels: &[String], part: &Part) -> Result<Vec<f32>, Stri
     Ok(values)
 }
 
-/// Most bytes of an image's samples; the values made of them take up to twice as much again.
+/// Most bytes of an image's samples. The values made of them take up to twice as much in addition.
 const MAX_SAMPLES: u64 = MAX_TABLES / 4;
 
 /// Refuses an image that would take too much memory to read.
@@ -218,12 +217,12 @@ fn check_samples(bytes: u64) -> Result<(), String> {
     ))
 }
 
-/// Largest allowed ratio of image size to file size. Tables compress by less than four; DEFLATE
-/// alone could reach a thousand.
+/// Largest allowed ratio of image size to file size: tables compress by less than four, and DEFLATE
+/// could reach a thousand.
 const EXPANSION: usize = 64;
 
-/// Refuses what [`encode`] does not write, before any pixel is decoded, and what declares more
-/// pixels than the file can hold, before the library allocates them.
+/// Refuses images that [`encode`] does not write, before any pixel is decoded, and images that
+/// declare more pixels than the file can hold, before the library allocates them.
 fn check_header(bytes: &[u8]) -> Result<(), String> {
     let meta =
         MetaData::read_from_buffered(bytes, false).map_err(|why| format!("OpenEXR: {why}"))?;
@@ -244,8 +243,8 @@ fn check_header(bytes: &[u8]) -> Result<(), String> {
     check_samples(all as u64)
 }
 
-/// No table needs decoders of other compressions, and on hostile blocks that of B44 overflows
-/// (`exr` 1.74.2, `unpack14`).
+/// Refuses other encodings: tables do not need their decoders, of which that of B44 overflows on
+/// hostile blocks (`exr` 1.74.2, `unpack14`).
 fn check_encoding(header: &Header) -> Result<(), String> {
     let known = |channel: &ChannelDescription| {
         channel.sample_type != SampleType::U32 && channel.sampling == Vec2(1, 1)
@@ -266,7 +265,6 @@ fn check_encoding(header: &Header) -> Result<(), String> {
     ))
 }
 
-/// The description in a part's attributes.
 fn document(part: &Part) -> Option<String> {
     match part.attributes.other.get(&Text::new_or_panic(ATTRIBUTE)) {
         Some(AttributeValue::Text(text)) => Some(text.to_string()),
@@ -281,7 +279,7 @@ fn ascii(text: &str) -> String {
         if c.is_ascii() {
             ascii.push(c);
         } else {
-            // In JSON such characters occur in strings only, which allow the escape.
+            // In JSON other characters occur in strings only, which allow the escape.
             let mut units = [0; 2];
             c.encode_utf16(&mut units)
                 .iter()

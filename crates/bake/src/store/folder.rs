@@ -1,5 +1,5 @@
-//! Folders that files are written into: made when they are missing, and removed again if nothing
-//! was written.
+//! Folders that files are written into. Missing folders are made, and removed again if nothing was
+//! written.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -15,11 +15,11 @@ use super::interrupt::{self, Leftovers};
 use super::replace::{Replacement, check_writable, in_folder, remove_abandoned};
 use super::{Format, NAMES, StoreError, Written, bytes_of, image_of, numbered};
 
-/// A folder to write into. One that was made for it is removed again on drop if it is empty.
+/// A folder to write into. On drop, folders that were made for it are removed if they are empty.
 #[derive(Debug)]
 pub struct OutputFolder {
     path: PathBuf,
-    /// Folders that did not exist before, the innermost first.
+    /// Folders that were made, the innermost first.
     _made: Leftovers,
     /// Whether something new is in the folder.
     written: Arc<AtomicBool>,
@@ -36,7 +36,7 @@ impl OutputFolder {
         let _made = Leftovers::folders(made);
         let this = Self { path: path.into(), _made, written: Arc::default() };
         let failed = |why| StoreError::Io(path.into(), why);
-        // Fail now rather than after an hour of work.
+        // Fails before the tables are baked rather than after.
         in_folder(path, || tempfile::tempfile_in(path)).map_err(failed)?;
         Ok(this)
     }
@@ -44,7 +44,7 @@ impl OutputFolder {
     /// As [`open`](Self::open), for a set: also checks that the set in the folder can be replaced.
     ///
     /// # Errors
-    /// [`StoreError::Io`] naming what cannot.
+    /// [`StoreError::Io`] naming the file that cannot be replaced.
     pub fn open_for_set(path: &Path) -> Result<Self, StoreError> {
         let this = Self::open(path)?;
         remove_abandoned(path);
@@ -55,21 +55,21 @@ impl OutputFolder {
         Ok(this)
     }
 
-    /// Whether something was written, to be read at any time.
+    /// Whether something was written; may be read at any time.
     pub fn written(&self) -> Arc<AtomicBool> {
         self.written.clone()
     }
 
-    /// The folder.
     pub(super) fn path(&self) -> &Path {
         &self.path
     }
 
     /// Writes a set as one file, `tables.safetensors` or `tables.exr`; a set without tables is
-    /// `tables.safetensors` in either format, several sets are [`sets`](Self::sets). The new file
-    /// takes the place of the set that was in the folder in one step, as
-    /// [`replace`](super::replace()) does it, and what else was of that set is removed; other files
-    /// stay. Of two writers at once the last one's set is there.
+    /// `tables.safetensors` in either format. Several sets are written by [`sets`](Self::sets).
+    ///
+    /// The new file replaces the set that was in the folder in one step, as by
+    /// [`replace`](super::replace()), and other files of the old set are removed; files that are of
+    /// no set stay. Of two writers at once the set of the last remains.
     ///
     /// # Errors
     /// [`StoreError`] naming the path. The old set is then unchanged.
@@ -83,8 +83,8 @@ impl OutputFolder {
         Ok(vec![written])
     }
 
-    /// Writes each table as an image of its own, NAME.exr, for programs that open no parts. Such a
-    /// folder is no set; other files in it stay.
+    /// Writes each table as an image of its own, NAME.exr, for programs that cannot read images of
+    /// several parts. The images are no set that can be read back; other files in the folder stay.
     ///
     /// # Errors
     /// [`StoreError`] naming the path, such as a table whose name no file can have.
@@ -98,12 +98,12 @@ impl OutputFolder {
         self.write_files(images.iter().map(|(name, bytes)| (&name[..], &bytes[..])))
     }
 
-    /// Writes files, each as [`replace`](super::replace()) does it. All are completed beside the
-    /// old ones before the first takes its place, and the others follow at once: only a process
-    /// that is killed between two renames leaves old files beside new ones.
+    /// Writes files, each as by [`replace`](super::replace()). All are completed under temporary
+    /// names, and then renamed one right after the other: only a process that is killed between two
+    /// renames leaves some files old and some new.
     ///
     /// # Errors
-    /// [`StoreError::Io`] with the operating system's error, or that two of the names lead to one
+    /// [`StoreError::Io`] with the operating system's error, or if two of the names lead to one
     /// file. All old files are then untouched, unless the disk itself failed at the very end, when
     /// some may be replaced.
     pub fn write_files<'a>(
@@ -120,27 +120,28 @@ impl OutputFolder {
         Ok(all)
     }
 
-    /// Puts a new set in the place of the old one.
+    /// Replaces the old set by a new one.
     pub(super) fn exchange(&self, new: Replacement) -> Result<(), StoreError> {
-        // One writer at a time, or one might remove what another puts in place between its look and
-        // its removal, while the other removes its own: no set would be left. Where a folder cannot
-        // be locked, as on some network file systems, that stays possible.
+        // Two writers at once might each remove the new set of the other, so that no set would be
+        // left. Where a folder cannot be locked, as on some network file systems, that stays
+        // possible.
         let folder = fs::File::open(&self.path);
         let _lock = folder.and_then(|folder| folder.lock().map(|()| folder));
         let old = OldSet::of(&self.path);
         let _writing = interrupt::writing();
         let new = new.commit().map_err(|(path, why)| StoreError::Io(path, why))?;
-        // While the write is marked: an interrupt sees both or neither.
+        // Set while `_writing` is held, so that an interrupt sees both the files and the flag, or
+        // neither.
         self.written.store(true, Relaxed);
         old.remove(&self.path, &new)
     }
 }
 
-/// What tells a file from another of the same name: time, size, and where there is one the number
-/// of the file, since clocks may tick slower than files are written.
+/// Time, size and inode number of a file, which tell it from another of the same name. The time
+/// alone does not, since clocks may tick slower than files are written.
 type Stamp = Option<(SystemTime, u64, u64)>;
 
-/// The files of the set in a folder, by name, before another takes its place.
+/// The files of the set in a folder, by name, before a new set replaces it.
 struct OldSet {
     files: BTreeMap<String, Stamp>,
 }
@@ -152,8 +153,8 @@ impl OldSet {
         Self { files: files.filter(|(_, stamp)| stamp.is_some()).collect() }
     }
 
-    /// Removes what is not among the new files. What another writer put there meanwhile is not
-    /// touched, nor what its index lists.
+    /// Removes the files that are not among the new ones, except those that another writer put
+    /// there meanwhile and those that its index lists.
     fn remove(mut self, folder: &Path, new: &[PathBuf]) -> Result<(), StoreError> {
         let remove = |(name, old): (String, Stamp)| {
             let path = folder.join(name);
@@ -165,14 +166,14 @@ impl OldSet {
                 _ => Ok(()),
             }
         };
-        // The index before what it lists.
+        // The index is removed before the files that it lists.
         self.files.remove_entry(Index::FILE).map_or(Ok(()), remove)?;
         let listed = indexed(folder);
         self.files.into_iter().filter(|(name, _)| !listed.contains(name)).try_for_each(remove)
     }
 }
 
-/// The numbered sets that the index in a folder lists, if there is one.
+/// The files of the numbered sets that the index in a folder lists, if there is one.
 fn indexed(folder: &Path) -> Vec<String> {
     let index = numbered::index_at(folder).ok().flatten();
     index.into_iter().flat_map(|index| index.sets).map(|set| set.file).collect()
@@ -182,7 +183,7 @@ fn link_stamp(path: &Path) -> Stamp {
     stamp(fs::symlink_metadata(path))
 }
 
-/// `None` of no file.
+/// The stamp of a file; `None` if there is no file.
 pub(super) fn stamp(file: io::Result<fs::Metadata>) -> Stamp {
     let file = file.ok()?;
     #[cfg(unix)]

@@ -1,4 +1,4 @@
-//! Ends a process between two writes and never within one.
+//! Lets an interrupted process end between two writes, not within one.
 
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
@@ -12,7 +12,7 @@ static WRITING: Mutex<()> = Mutex::new(());
 /// Files under temporary names, and folders made for sets.
 static LEFTOVERS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Marks a write that must not be cut short, as long as the guard lives. Does not nest.
+/// Marks a write that must not be cut short, while the guard lives. Does not nest.
 pub(super) fn writing() -> MutexGuard<'static, ()> {
     WRITING.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -21,8 +21,8 @@ fn leftovers() -> MutexGuard<'static, Vec<PathBuf>> {
     LEFTOVERS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What an interrupt removes as long as this lives: files, and folders if they are empty, which go
-/// on drop as well.
+/// Files and folders that an interrupt removes while this lives. Only empty folders are removed, on
+/// drop as well.
 #[derive(Debug)]
 pub(super) struct Leftovers(Vec<PathBuf>);
 
@@ -42,7 +42,7 @@ pub(super) struct Partial {
 }
 
 impl Partial {
-    /// Makes a file, which is listed before an interrupt can see it.
+    /// Makes a file; the lock on the list is held meanwhile, so that an interrupt misses no file.
     pub(super) fn new(make: impl FnOnce() -> io::Result<NamedTempFile>) -> io::Result<Self> {
         let mut all = leftovers();
         let file = make()?;
@@ -53,7 +53,7 @@ impl Partial {
 
 fn remove_empty(all: &[PathBuf]) {
     for path in all {
-        // A folder with any content cannot be removed and stays, as does a file.
+        // A folder with any content cannot be removed, nor can a file.
         let _ = fs::remove_dir(path);
     }
 }
@@ -69,8 +69,7 @@ impl Drop for Leftovers {
 /// replaced, lets no other write begin, and removes files under temporary names and the empty
 /// folders that were made for sets.
 ///
-/// Returns whether the files are whole. `false` says that a write has not ended within `patience`,
-/// as on a disk that hangs.
+/// Returns whether the files are whole; `false` if a write has not ended within `patience`.
 pub fn quiesce(patience: Duration) -> bool {
     let start = Instant::now();
     let guard = loop {
@@ -85,7 +84,7 @@ pub fn quiesce(patience: Duration) -> bool {
     };
     let leftovers = leftovers();
     for path in leftovers.iter() {
-        // One that is gone already is no error, and folders stay.
+        // Fails for folders and for files that are gone already.
         let _ = fs::remove_file(path);
     }
     remove_empty(&leftovers);

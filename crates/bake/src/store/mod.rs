@@ -1,8 +1,7 @@
-//! Tables on disk, as safetensors and OpenEXR. Only this folder of the crate reads and writes table
-//! files.
+//! Reads and writes files of tables, as safetensors and OpenEXR.
 //!
-//! A set is one file, which takes its place in one step: a reader, which needs no lock, sees the
-//! old set or the new one.
+//! A set is one file, which is replaced in one step: readers need no lock, and see the old set or
+//! the new one.
 
 #[cfg(feature = "exr")]
 mod exr;
@@ -36,7 +35,7 @@ pub enum Format {
     /// `tables.safetensors`.
     #[default]
     Safetensors,
-    /// `tables.exr`, an image of one part a table; needs the feature `exr`.
+    /// `tables.exr`, an image of one part for each table; needs the feature `exr`.
     Exr,
 }
 
@@ -50,8 +49,8 @@ impl Format {
     }
 }
 
-/// What may hold a folder's set, in the order in which it is looked for. There is more than one for
-/// a moment, or after a kill, while a set of one form takes the place of one of another.
+/// Files that may hold a folder's set, in the order in which they are looked for. There may be
+/// several for a moment, or after a kill, while a set in one of them replaces that in another.
 const NAMES: [&str; 3] = [Format::Safetensors.file(), Format::Exr.file(), Index::FILE];
 
 /// Why a set could not be read or written.
@@ -90,7 +89,7 @@ pub fn write(folder: &Path, set: &Tables, format: Format) -> Result<Vec<Written>
     OutputFolder::open_for_set(folder)?.write(set, format)
 }
 
-/// The bytes of a set's file; only what [`read`] reads back.
+/// The bytes of a set's file, of a size that [`read`] allows.
 fn bytes_of(set: &Tables, format: Format, path: &Path) -> Result<Vec<u8>, StoreError> {
     let (origin, tables) = (set.provenance(), set.tables());
     let bytes = match format {
@@ -120,7 +119,6 @@ fn invalid(why: String) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidInput, why)
 }
 
-/// Refuses more bytes of a set than are read.
 fn allow(bytes: u64, limit: u64) -> Result<(), String> {
     if bytes <= limit {
         return Ok(());
@@ -132,7 +130,7 @@ fn allow(bytes: u64, limit: u64) -> Result<(), String> {
     ))
 }
 
-/// What a path leads to.
+/// The file or the index to which a path leads.
 enum Found {
     File(PathBuf),
     Numbered(PathBuf, Index),
@@ -164,11 +162,11 @@ impl Found {
     }
 }
 
-/// Reads a set from a file, or from the folder that it was written into; an image may be one of a
-/// single table. Numbered sets, by their folder or its index, are read as one if they are small
+/// Reads a set from a file, or from the folder that it was written into; an image may have a single
+/// table. Numbered sets, named by their folder or its index, are read as one set if they are small
 /// enough together; otherwise [`read_materials`] reads some of their materials.
 ///
-/// A folder's set is `tables.safetensors` if there is one, or `tables.exr`, or what
+/// A folder's set is `tables.safetensors` if there is one, else `tables.exr`, else the sets that
 /// `tables.index.json` lists.
 ///
 /// # Errors
@@ -194,8 +192,7 @@ pub fn read_materials(path: &Path, names: &[&str]) -> Result<Tables, StoreError>
     })
 }
 
-/// Reads what a path leads to; again, if that fails and something else has taken its place
-/// meanwhile.
+/// Reads what a path leads to; again, if that fails and a file was replaced meanwhile.
 fn undisturbed<T>(path: &Path, read: impl Fn() -> Result<T, StoreError>) -> Result<T, StoreError> {
     let there = || {
         let names = if path.is_dir() { &NAMES[..] } else { &[""] };
@@ -235,7 +232,7 @@ mod tests {
         assert!(message.contains("at most 10 MiB") && message.contains("precision"), "{message}");
     }
 
-    /// Another writer's set takes the place of the one that was found, at the worst moment.
+    /// Another writer replaces the set between finding it and reading it.
     #[test]
     fn a_set_that_moves_while_it_is_looked_for_is_found() {
         let folder = tempfile::tempdir().unwrap();

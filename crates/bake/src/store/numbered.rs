@@ -9,9 +9,9 @@ use super::replace::Replacement;
 use super::{Format, OutputFolder, StoreError, Written, bytes_of, invalid};
 use crate::input::{self, MAX_TABLES};
 
-/// Writes any number of sets into a folder: one is `tables.safetensors`, several are files such as
-/// `tables-00001-9d2ad2a6.safetensors` with an index, `tables.index.json`, which takes its place
-/// last; only one set is in memory at a time.
+/// Writes any number of sets into a folder: one set is `tables.safetensors`, several are files such
+/// as `tables-00001-9d2ad2a6.safetensors` with an index, `tables.index.json`, which is replaced
+/// last. Only one set is in memory at a time.
 #[derive(Debug)]
 pub struct SetWriter {
     folder: OutputFolder,
@@ -58,8 +58,8 @@ impl SetWriter {
         Ok(())
     }
 
-    /// Puts all sets in the place of what the folder held: the index in one step, after the files
-    /// that it lists.
+    /// Replaces the set or sets of the folder: the index in one step, after the files that it
+    /// lists.
     ///
     /// # Errors
     /// As [`OutputFolder::write`]; also if two sets have materials of the same name.
@@ -85,7 +85,7 @@ impl SetWriter {
     }
 }
 
-/// The index in a folder, if it holds one.
+/// The index in a folder, if there is one.
 pub(super) fn index_at(folder: &Path) -> Result<Option<Index>, StoreError> {
     let file = folder.join(Index::FILE);
     if std::fs::symlink_metadata(&file).is_err() {
@@ -96,7 +96,7 @@ pub(super) fn index_at(folder: &Path) -> Result<Option<Index>, StoreError> {
     Index::from_json(&text).map(Some).map_err(|why| StoreError::Load(file, why))
 }
 
-/// All sets of a folder's index as one, if that is no larger than what is read of one.
+/// All sets of a folder's index as one set, if together they are not larger than [`MAX_TABLES`].
 pub(super) fn read_all(folder: &Path, index: &Index) -> Result<Tables, StoreError> {
     if index.bytes() > MAX_TABLES {
         let first = folder.join(index.sets.first().map_or(Index::FILE, |set| &set.file));

@@ -1,7 +1,6 @@
-//! Replaces a file as a whole: the only place that writes what a user names.
-//!
-//! A path is written to as a shell's `>` would: links are followed, modes kept, devices written
-//! through. What cannot be replaced as a whole is refused.
+//! Replaces files as a whole. All files that a user names are written by this module, as a shell's
+//! `>` would: links are followed, modes kept, devices written through. What cannot be replaced as a
+//! whole is refused.
 
 use std::collections::{BTreeSet, HashMap};
 use std::fs::{self, Metadata, OpenOptions};
@@ -17,11 +16,12 @@ use crate::input;
 const PREFIX: &str = ".microfacet-bake-";
 const SUFFIX: &str = ".partial";
 
-/// Age at which an incomplete file is a leftover: it lives for seconds, since all of its bytes are
-/// in memory when it is begun, and of numbered sets until all are baked.
+/// Age at which an incomplete file counts as abandoned. Incomplete files exist for seconds, since
+/// all of their bytes are in memory when they are begun; those of numbered sets, until all sets are
+/// baked.
 const ABANDONED: Duration = Duration::from_secs(24 * 60 * 60);
 
-/// Most times that a folder is made, since others may remove it.
+/// Most times that a folder is made again after another process removed it.
 const TIMES: usize = 100;
 
 /// Writes `bytes` to `path` so that at every moment either the old file or the complete new one is
@@ -39,7 +39,7 @@ pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     replace_with(path, |out| out.write_all(bytes))
 }
 
-/// As [`replace`], with bytes that `write` writes, which need not fit into memory.
+/// As [`replace`], with the bytes that `write` writes, which need not fit into memory.
 pub fn replace_with(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -50,7 +50,7 @@ pub fn replace_with(
     replacement.commit().map(|_| ()).map_err(|(_, why)| why)
 }
 
-/// Checks that a file could be written as by [`replace`], and writes nothing.
+/// Checks that a file could be written by [`replace`], without changing it.
 pub fn check_file(path: &Path) -> io::Result<()> {
     let to = Destination::of(path)?;
     if to.is_device() {
@@ -83,15 +83,15 @@ fn is_char_device(_: fs::FileType) -> bool {
     false
 }
 
-/// Where a path leads, or would lead if the file existed.
+/// The file to which a path leads, or would lead if the file existed.
 struct Destination {
     path: PathBuf,
-    /// The regular file or device there.
+    /// The metadata of the regular file or device there.
     old: Option<Metadata>,
 }
 
 impl Destination {
-    /// Follows symbolic links, and checks that what is there can be written to.
+    /// Follows symbolic links, and checks that the file there can be written to.
     fn of(path: &Path) -> io::Result<Self> {
         let mut old = match fs::metadata(path) {
             Err(why) if why.kind() == ErrorKind::NotFound => None,
@@ -102,7 +102,7 @@ impl Destination {
             found => Some(found?),
         };
         if let Some(old) = old.take_if(|old| !old.is_file()) {
-            // Descriptors such as /dev/stdout look like links, but lead where no path does.
+            // Descriptors such as /dev/stdout look like links, but lead to no path.
             if is_char_device(old.file_type()) {
                 return Ok(Self { path: path.into(), old: Some(old) });
             }
@@ -110,7 +110,7 @@ impl Destination {
             return refused(ErrorKind::InvalidInput, why);
         }
         let mut path = path.to_path_buf();
-        // A circle of links has no metadata.
+        // This ends: a circle of links has no metadata, and was refused.
         while let Ok(to) = fs::read_link(&path) {
             let folder = folder_of(&path);
             if fs::canonicalize(folder).is_ok_and(|folder| folder.starts_with("/proc")) {
@@ -128,9 +128,9 @@ impl Destination {
             let why = format!("the folder {} does not exist; make it first", folder.display());
             return refused(ErrorKind::NotFound, why);
         }
-        // To replace a file takes the right to write to its folder only. Ask for this one too.
+        // To rename over a file takes only the right to write to its folder: check the file's own.
         match OpenOptions::new().write(true).open(&path) {
-            // There was none, or another writer just removed it.
+            // There was no file, or another writer just removed it.
             Err(why) if why.kind() == ErrorKind::NotFound => old = None,
             opened => drop(opened?),
         }
@@ -141,18 +141,18 @@ impl Destination {
         self.old.as_ref().is_some_and(|old| !old.is_file())
     }
 
-    /// A complete temporary file beside it, synchronised to disk, with the rights of the old file,
-    /// or those that any new file gets.
+    /// A complete temporary file in the same folder, synchronised to disk, with the rights of the
+    /// old file, or those that any new file gets.
     fn stage(&self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<Partial> {
         let mut builder = tempfile::Builder::new();
         builder.prefix(PREFIX).suffix(SUFFIX);
         #[cfg(unix)]
         if self.old.is_none() {
-            // The umask applies. Without this, temporary files are their owner's alone.
+            // Reduced by the umask. By default a temporary file is accessible to its owner only.
             builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         }
         let folder = folder_of(&self.path);
-        // Without the temporary name, of which a user knows nothing.
+        // The message leaves out the temporary name.
         let mut staged = Partial::new(|| builder.tempfile_in(folder)).map_err(|why| {
             let (folder, kind) = (folder.display(), why.kind());
             io::Error::new(kind, format!("cannot write into the folder {folder}: {kind}"))
@@ -164,7 +164,7 @@ impl Destination {
             let file = staged.file.as_file();
             let new = file.metadata()?;
             if (new.uid(), new.gid()) != (old.uid(), old.gid()) {
-                // Few may give a file to another owner, or to any group.
+                // Few users may change the owner of a file, or set any group.
                 let _ = fchown(file, None, Some(old.gid()));
                 let _ = fchown(file, Some(old.uid()), None);
             }
@@ -175,18 +175,18 @@ impl Destination {
     }
 }
 
-/// New files, complete under temporary names, that take their places one right after the other.
+/// New files, complete under temporary names, that are renamed one right after the other.
 #[derive(Debug, Default)]
 pub(super) struct Replacement {
-    /// Where they go, and where that leads; devices have their bytes already.
+    /// The path of each file, and the file it leads to; `None` for devices, which are written at
+    /// once.
     all: Vec<(PathBuf, Option<(Partial, PathBuf)>)>,
-    /// Where they lead with links resolved, to the paths that were named.
+    /// The named path of each file, by the file it leads to with links resolved.
     places: HashMap<PathBuf, PathBuf>,
 }
 
 impl Replacement {
-    /// Completes a file of these bytes under a temporary name, in a folder that is made if it is
-    /// missing.
+    /// Completes a file of these bytes under a temporary name, in a folder that is made if missing.
     pub(super) fn put(&mut self, path: PathBuf, bytes: &[u8]) -> Result<Written, StoreError> {
         match in_folder(folder_of(&path), || self.add(&path, |out| out.write_all(bytes))) {
             Ok(()) => Ok(Written { path, bytes: bytes.len() }),
@@ -194,7 +194,7 @@ impl Replacement {
         }
     }
 
-    /// Completes what is written under a temporary name.
+    /// Completes a file of the bytes that `write` writes under a temporary name.
     fn add(
         &mut self,
         path: &Path,
@@ -216,13 +216,13 @@ impl Replacement {
             return refused(ErrorKind::InvalidInput, why);
         }
         let staged = to.stage(write)?;
-        // Not before: what could not be staged may be tried again.
+        // Only after success, since a file that could not be staged may be tried again.
         self.places.extend(place.map(|place| (place, path.into())));
         self.all.push((path.into(), Some((staged, to.path))));
         Ok(())
     }
 
-    /// Puts all in their places, and returns their paths.
+    /// Renames all files, and returns their paths.
     pub(super) fn commit(self) -> Result<Vec<PathBuf>, (PathBuf, io::Error)> {
         let (mut written, mut folders) = (Vec::new(), BTreeSet::new());
         for (path, staged) in self.all {
@@ -241,8 +241,8 @@ impl Replacement {
     }
 }
 
-/// Makes renames in a folder durable, where the system can do that for this folder: some network
-/// file systems cannot, and only Unix opens folders.
+/// Makes renames in a folder durable, where the system can: some network file systems cannot, and
+/// only Unix opens folders.
 fn sync(folder: &Path) -> io::Result<()> {
     let done = fs::File::open(folder).map_or(Ok(()), |folder| folder.sync_all());
     done.or_else(|why| match why.kind() {
@@ -261,16 +261,16 @@ pub(crate) fn remove_abandoned(folder: &Path) {
             file.is_file()
                 && file.modified().is_ok_and(|at| at.elapsed().is_ok_and(|age| age > ABANDONED))
         };
-        // The metadata of an entry are those of a link itself.
+        // `DirEntry::metadata` does not follow links.
         if name.starts_with(PREFIX) && name.ends_with(SUFFIX) && entry.metadata().is_ok_and(is_old)
         {
-            // Tidying up is no reason to fail.
+            // A leftover that cannot be removed is no error.
             let _ = fs::remove_file(entry.path());
         }
     }
 }
 
-/// Makes a folder, and those it is in, unless it is there.
+/// Makes a folder and its parents, unless it exists.
 pub(crate) fn make_folder(path: &Path) -> io::Result<()> {
     let why = match (fs::metadata(path), fs::read_link(path)) {
         (Ok(found), _) if found.is_dir() => return Ok(()),
@@ -284,9 +284,10 @@ pub(crate) fn make_folder(path: &Path) -> io::Result<()> {
     refused(ErrorKind::NotADirectory, why)
 }
 
-/// Writes something into a folder, which is made if it is missing, and again if it goes meanwhile:
-/// a process that made it and then wrote nothing removes it. By the time of a look a third may have
-/// made it again, so whatever is not found is a reason to try once more.
+/// Writes something into a folder, which is made if it is missing, and again if it is removed
+/// meanwhile, as by a process that made it and then wrote nothing. Another process may make it
+/// again, too, so the attempt is repeated whenever something is not found, whether the folder
+/// exists or not.
 pub(crate) fn in_folder<T>(folder: &Path, mut act: impl FnMut() -> io::Result<T>) -> io::Result<T> {
     let mut once = || make_folder(folder).and_then(|()| act());
     for _ in 1..TIMES {
@@ -316,14 +317,14 @@ mod tests {
         });
         done.unwrap();
         assert_eq!((times, fs::read(path.join("file")).unwrap().as_slice()), (4, &b"whole"[..]));
-        // Another may have made it before we look whether it is there.
+        // Something is not found although the folder exists.
         let mut times = 0;
         let done = in_folder(&path, || {
             times += 1;
             if times == 1 { Err(io::ErrorKind::NotFound.into()) } else { Ok(times) }
         });
         assert!(path.is_dir() && done.unwrap() == 2);
-        // What fails for ever is an error, and for another reason at once.
+        // Repeated failure is an error; a failure of another kind is one at once.
         for (kind, tries) in [(io::ErrorKind::NotFound, TIMES), (io::ErrorKind::StorageFull, 1)] {
             let mut times = 0;
             let failed = in_folder(&path, || {
@@ -361,7 +362,7 @@ mod tests {
             fs::set_permissions(path, fs::Permissions::from_mode(mode)).unwrap();
         }
 
-        /// Whatever is written last would be in both.
+        /// The bytes that are written last would be in both files.
         #[test]
         fn two_links_to_one_file_are_refused() {
             let folder = tempfile::tempdir().unwrap();
@@ -402,7 +403,7 @@ mod tests {
             let folder = tempfile::tempdir().unwrap();
             let path = folder.path().join("file");
             replace(&path, b"new").unwrap();
-            // As any other new file.
+            // The mode of any other new file.
             fs::write(folder.path().join("other"), "").unwrap();
             assert_eq!(mode(&path), mode(&folder.path().join("other")));
             for kept in [0o600, 0o664] {
@@ -410,7 +411,7 @@ mod tests {
                 replace(&path, b"again").unwrap();
                 assert_eq!(mode(&path), kept);
             }
-            // An administrator's bake leaves a file its owner; others cannot try this.
+            // The owner is kept, where this process may change owners at all.
             if std::os::unix::fs::chown(&path, Some(12345), Some(54321)).is_ok() {
                 replace(&path, b"again").unwrap();
                 let found = fs::metadata(&path).unwrap();

@@ -1,4 +1,4 @@
-//! What stands in for images in a build without the feature `exr`.
+//! Errors for images in a build without the feature `exr`.
 
 use microfacet_sampler::Tables;
 use microfacet_tables::{LoadError, Provenance, Table};

@@ -1,4 +1,4 @@
-//! What accompanies a bake: the cache, the counts of what was done, and the report of progress.
+//! The cache, the limits, the counts and the progress of a bake.
 
 use std::collections::HashSet;
 use std::io;
@@ -27,19 +27,16 @@ impl Job {
         Self { cache, progress, max_memory, patient, fresh, cache_error, seconds }
     }
 
-    /// The cached tables under a key, if they are those that are asked for.
     pub(super) fn get(&self, key: &str, are: impl Fn(&[Table]) -> bool) -> Option<Vec<Table>> {
         self.cache.get(key).filter(|tables| are(tables))
     }
 
-    /// Caches tables under a key.
     pub(super) fn keep(&mut self, key: &str, tables: &[Table]) {
         if let Err(why) = self.cache.put(key, tables) {
             self.cache_error.get_or_insert(why);
         }
     }
 
-    /// Removes a key from the cache.
     pub(super) fn forget(&self, key: &str) {
         self.cache.remove(key);
     }

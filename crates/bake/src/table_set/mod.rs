@@ -1,8 +1,8 @@
-//! The whole bake: from a plan and a target to a certified set.
+//! Bakes a certified set from a plan and a target.
 //!
-//! [`bake_with`] splits the plan into table groups, the tables that are refined together. For a
-//! [quality](Target::Quality) each group is baked at it; for the other targets `search` chooses the
-//! levels. A group bakes its tables, certifies them and keeps them in the cache.
+//! [`bake_with`] splits the plan into table groups, tables that are refined together. With
+//! [`Target::Quality`] each group is baked at that quality; for the other targets a search chooses
+//! the levels. The tables of a group are baked, certified and cached together.
 
 mod group;
 mod job;
@@ -35,10 +35,10 @@ pub use search::smallest_bytes;
 pub enum Target {
     /// The numbers of nodes of a quality.
     Quality(Quality, Precision),
-    /// Small tables with no larger error: absolute, of G1, of the CDF of slopes, of D/D(0) and of
-    /// albedos.
+    /// The smallest tables found with no larger error: absolute, of G1, of the CDF of slopes, of
+    /// D/D(0) and of albedos.
     MaxError(f64),
-    /// Accurate tables whose safetensors file has no more bytes.
+    /// The most accurate tables found whose safetensors file has no more bytes.
     MaxBytes(usize),
 }
 
@@ -58,15 +58,15 @@ impl Default for Target {
 /// Cache, limits and progress report of a bake.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// Where finished tables are kept; by default nowhere.
+    /// Where finished tables are cached; by default nowhere.
     pub cache: Cache,
     /// Bytes of memory that the bake may take; a larger bake is refused before any is taken. By
     /// default 4 GiB.
     pub max_memory: u64,
-    /// Whether to choose tables even where that takes more than three times as long as a bake at
+    /// Whether to choose tables even if that takes more than three times as long as a bake at
     /// default quality, and more than [`PATIENCE`] seconds. By default not.
     pub patient: bool,
-    /// Counts the work, by nodes and places of certificates; a clone of it can be watched.
+    /// Counts the work in planned seconds of one thread; the caller can read a clone of it.
     pub progress: Meter,
 }
 
@@ -81,19 +81,19 @@ impl Default for Settings {
     }
 }
 
-/// Seconds that choosing tables may always take, however fast the bake at default quality is.
+/// Seconds that choosing tables may take even if the bake at default quality is faster.
 pub const PATIENCE: f64 = 10.0;
 
-/// A set, and what was done for it.
+/// A set, and counts of its bake.
 #[derive(Debug)]
 pub struct Baked {
     /// The set.
     pub set: Tables,
-    /// Number of its tables that were newly baked; the others come from the cache.
+    /// Number of its tables that were baked; the others come from the cache.
     pub baked: usize,
     /// Why the cache could not keep some tables.
     pub cache_error: Option<io::Error>,
-    /// Seconds for visible normals, and for albedos.
+    /// Seconds spent on visible normals, and on albedos.
     pub seconds: [f64; 2],
 }
 
@@ -115,7 +115,7 @@ pub enum BakeError {
          allow that much"
     )]
     OutOfReach {
-        /// What was asked for.
+        /// The error that was asked for.
         max_error: f64,
         /// The tables that do not meet it.
         name: String,
@@ -129,11 +129,11 @@ pub enum BakeError {
         if *planned { "about " } else { "" }
     )]
     TooSmall {
-        /// What was allowed.
+        /// The bytes that were allowed.
         max_bytes: usize,
-        /// What the smallest set takes.
+        /// The bytes of the smallest set.
         smallest: usize,
-        /// Whether that is planned: nothing was baked.
+        /// Whether `smallest` is an estimate, before anything was baked.
         planned: bool,
     },
     /// Choosing the tables would take long, and [`Settings::patient`] is not set.
@@ -142,18 +142,18 @@ pub enum BakeError {
          {default_seconds:.0} s: allow a larger error or fewer bytes, or let it take its time"
     )]
     TooSlow {
-        /// Estimated seconds to choose them.
+        /// Estimated seconds to choose the tables.
         search: f64,
         /// Estimated seconds of a bake at default quality.
         default_seconds: f64,
     },
-    /// [`Target::MaxBytes`], which all tables of a plan share, where each is to be baked by itself.
+    /// [`Target::MaxBytes`], which all tables of a plan share, for needs that are baked one by one.
     #[error(
         "the bytes of a set are divided among all of its tables, which so cannot be baked one by \
          one: choose a quality or a largest error instead"
     )]
     Inseparable,
-    /// Tables that were to be kept could not be.
+    /// Tables of a need could not be cached.
     #[error("finished tables cannot be kept: {0}")]
     NotKept(io::Error),
     /// An albedo that is invalid, or not accurate enough.
@@ -175,8 +175,8 @@ impl From<MaterialError> for BakeError {
 
 microfacet_core::debug_in_words!(BakeError);
 
-/// What a set of this quality is expected to cost, by its parts: those of [`Plan::shapes`],
-/// [`Plan::distributions`] and [`Plan::albedos`], and last the description of the set itself.
+/// The expected costs of a set of this quality: of each of [`Plan::shapes`],
+/// [`Plan::distributions`] and [`Plan::albedos`], and last of the description of the set itself.
 ///
 /// # Errors
 /// [`BakeError::Albedo`] for an albedo that no table can hold.
@@ -211,9 +211,9 @@ pub fn bake(plan: &Plan, target: Target) -> Result<Baked, BakeError> {
 
 /// Bakes and certifies the tables of a plan with a cache, limits, and a report of the progress.
 ///
-/// Finished tables go into the cache, and so does each table of a range of shapes until the whole
-/// range is done: an interrupted bake resumes where it stopped. The bytes of a set do not depend on
-/// the cache or the number of threads.
+/// Finished table groups go into the cache, and so does each table of a range of shapes until the
+/// group is done, so that an interrupted bake resumes where it stopped. The bytes of a set do not
+/// depend on the cache or the number of threads.
 ///
 /// # Errors
 /// [`BakeError`] for a target that cannot be met within the settings.
@@ -248,13 +248,15 @@ pub fn bake_with(plan: &Plan, target: Target, settings: Settings) -> Result<Bake
     Ok(Baked { set, baked, cache_error: job.cache_error, seconds: job.seconds })
 }
 
-/// Tables in the order of a set: albedos of one layout together, which a file describes once.
+/// Tables in the order of a set: albedos of one layout together, so that a file describes them
+/// once.
 fn in_layouts(mut tables: Vec<Table>) -> Vec<Table> {
     tables.sort_by_cached_key(layout);
     tables
 }
 
-/// What albedos of one layout have in common. Other tables stay as they are, before them.
+/// The common properties of albedos of one layout; `None` for other tables, which so come first, in
+/// their order.
 fn layout(table: &Table) -> impl Ord + use<> {
     let Subject { masking, reflectance, .. } = &table.subject;
     let masking = Masking::ALL.iter().position(|form| Some(*form) == *masking);

@@ -1,4 +1,4 @@
-//! One thing that a scene needs, by itself: what any process on any machine can bake.
+//! A need of a scene: tables that any process on any machine can bake by themselves.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,9 +14,9 @@ use crate::plan::Plan;
 use crate::progress::Meter;
 use crate::table_spec::Level;
 
-/// Tables that are chosen, baked, certified and kept together, and how fine they are to be.
+/// A table group and its target.
 ///
-/// A need does not depend on the others of its plan. Where it was baked, a cache has its tables,
+/// A need does not depend on the others of its plan. When it was baked, the cache has its tables,
 /// and a bake of the whole plan reads them from there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Need {
@@ -24,7 +24,7 @@ pub struct Need {
     group: TableGroup,
 }
 
-/// A text that is not one of [`Need::to_text`], or of another version of this crate.
+/// The error for a text that is not of [`Need::to_text`], or of another version of this crate.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct NotANeed(String);
@@ -37,7 +37,7 @@ struct Sent {
 }
 
 impl Need {
-    /// What a plan needs, in the order of the plan.
+    /// The needs of a plan, in the order of the plan.
     ///
     /// # Errors
     /// [`BakeError::Inseparable`] for [`Target::MaxBytes`], which all tables share.
@@ -53,13 +53,13 @@ impl Need {
         Ok(groups.into_iter().map(|group| Self { target, group }).collect())
     }
 
-    /// What it is, in words of a table's name.
+    /// The name of the tables in messages.
     pub fn name(&self) -> String {
         self.group.name()
     }
 
-    /// The SHA-256, in hexadecimal, of all that its tables depend on: equal for needs with the same
-    /// tables, in any scene and on any machine that runs the same version.
+    /// The SHA-256, in hexadecimal, of all that its tables depend on: equal for needs of the same
+    /// tables, in any scene and on any machine with the same version.
     pub fn id(&self) -> String {
         let key = match self.target {
             Target::Quality(quality, precision) => self.group.key(quality.into(), precision),
@@ -68,14 +68,14 @@ impl Need {
         cache::sha256(&cache::complete(&key))
     }
 
-    /// Estimated seconds of one thread, for a largest error those of default quality; the same
-    /// number on every machine.
+    /// Estimated seconds of one thread, the same number on every machine; for [`Target::MaxError`]
+    /// those of default quality.
     pub fn seconds(&self) -> f64 {
         self.group.work(self.target.quality().into(), 1)
     }
 
-    /// Whether a cache has the finished tables, undamaged; `false` where that takes a search to
-    /// tell.
+    /// Whether a cache has the finished tables, undamaged; always `false` for [`Target::MaxError`],
+    /// where it would take a search to tell.
     pub fn is_kept(&self, cache: &Cache) -> bool {
         match self.target {
             Target::Quality(quality, precision) => {
@@ -87,7 +87,7 @@ impl Need {
         }
     }
 
-    /// Announces the work of [`bake`](Self::bake), so that a meter knows of it before it begins.
+    /// Announces the work of [`bake`](Self::bake).
     pub fn announce(&self, progress: &Meter) {
         // A search announces its steps one by one.
         if let Target::Quality(quality, _) = self.target {
@@ -95,11 +95,11 @@ impl Need {
         }
     }
 
-    /// Bakes what `settings.cache` lacks of the tables and keeps them there. Returns whether
-    /// anything had to be baked.
+    /// Bakes the tables that `settings.cache` lacks, and keeps them there. Returns whether any had
+    /// to be baked.
     ///
     /// # Errors
-    /// [`BakeError`] for tables that cannot be made within the settings, or not be kept.
+    /// [`BakeError`] for tables that cannot be made within the settings, or not cached.
     pub fn bake(&self, settings: Settings) -> Result<bool, BakeError> {
         let mut job = Job::new(settings);
         let tables = match self.target {
@@ -109,7 +109,7 @@ impl Need {
                 self.group.bake(level, &[precision], &mut job)?.concat()
             }
             Target::MaxError(max_error) => {
-                // A shard is as patient as it takes.
+                // A shard has no limit of time.
                 job.patient = true;
                 Search::new(vec![self.group.clone()]).meeting(max_error, &mut job)?
             }
@@ -121,7 +121,7 @@ impl Need {
         }
     }
 
-    /// The need as text, to be sent to another machine.
+    /// The need as text, for another machine.
     pub fn to_text(&self) -> String {
         let sent = Sent { versions: cache::versions(), need: self.clone() };
         toml::to_string(&sent).expect("needs are tables of numbers and names")
@@ -130,8 +130,7 @@ impl Need {
     /// The need that [`to_text`](Self::to_text) wrote.
     ///
     /// # Errors
-    /// [`NotANeed`] for any other text, and for one that another version wrote, whose tables would
-    /// not be those that are asked for.
+    /// [`NotANeed`] for any other text, and for one of another version, whose tables would differ.
     pub fn from_text(text: &str) -> Result<Self, NotANeed> {
         #[derive(Deserialize)]
         struct Head {

@@ -8,10 +8,10 @@ use crate::certify::albedo;
 use crate::plan::AlbedoWork;
 use crate::progress::Meter;
 
-/// Where only views can be refined, a doubling is kept if its error is at most this share of the
-/// error before: otherwise the error comes from elsewhere, such as an axis of the material. On a
-/// smooth curve six-point polynomials would reach a sixtieth; for indices near 1 (`docs/albedo.md`)
-/// 5.94e-3 became 5.89e-3.
+/// Where only the axis of cos θ can be refined, a doubling is kept if its error is at most this
+/// share of the error before: otherwise the error has another cause, such as an axis of the
+/// material. On a smooth curve six-point polynomials would reach a sixtieth; for indices near 1
+/// (`docs/albedo.md`) 5.94e-3 became 5.89e-3.
 const WORTH: f64 = 0.8;
 
 /// The certified albedo tables of a specification in several precisions.
@@ -22,8 +22,7 @@ pub(super) fn albedo_tables(
 ) -> Result<Vec<Vec<Table>>, AlbedoError> {
     let work = AlbedoWork::new(spec);
     let interior = albedo::interior_references(spec, &progress.stage(work.interior))?;
-    // Single precision, which hardly rounds, decides; it is certified only once where it is also
-    // asked for.
+    // The error in single precision, which has hardly any rounding, decides on refinement.
     let mut all = vec![Precision::F32];
     all.extend(precisions.iter().filter(|precision| **precision != Precision::F32));
     let asked = |sets: Vec<Vec<Table>>| {
@@ -31,7 +30,7 @@ pub(super) fn albedo_tables(
             |precision| all.iter().position(|other| other == precision).map(|i| sets[i].clone());
         precisions.iter().filter_map(of).collect()
     };
-    // What was expected holds some doublings.
+    // The work of doublings that was announced.
     let mut ahead = work.ahead(spec);
     let mut spec = spec.clone();
     let mut coarser: Option<(f64, Vec<Vec<Table>>)> = None;

@@ -1,9 +1,9 @@
 //! Chooses levels and precisions for a budget of error or of bytes.
 //!
 //! A *grade* is a level and a precision. The error of a table group falls with the level about as
-//! that of the general set does, and by how much it is off is measured: between two levels that
-//! were baked, the ratio is interpolated. So each bake narrows the levels down, until the coarsest
-//! that meets the budget has been baked and certified itself.
+//! that of the general set; the ratio of both is measured at levels that were baked, and
+//! interpolated between them. So each bake narrows the levels down, until the coarsest that meets
+//! the budget is itself baked and certified.
 
 use std::collections::BTreeMap;
 
@@ -21,21 +21,22 @@ use crate::table_spec::Level;
 const PRECISIONS: [Precision; 2] = [Precision::U16, Precision::F32];
 /// Another bake is worth it only if its size is at most this share of the best so far.
 const WORTH: f64 = 0.9;
-/// Limit of a group's measuring time, in bakes of it at default quality or, if longer, in the time
-/// spent so far.
+/// Limit of a group's measuring time, as a multiple of its bake at default quality or, if longer,
+/// of the time spent so far.
 const ALLOWANCE: f64 = 2.0;
 /// Ratio of two errors that count as different: one per cent.
 const RATIO: f64 = 1.01;
-/// Number of errors that are tried, from 1, more than that of any table, down to less than single
-/// precision resolves.
+/// Number of errors that are tried, from 1, above that of any table, to below what single precision
+/// resolves.
 const ERRORS: i32 = 2000;
 /// No further bake is worth it if the error measured is within this factor of the best predicted.
 const CLOSE: f64 = 1.12;
-/// The part of the planned bytes that any set has: the rest are digits of certificates.
+/// The share of the planned bytes that any set has; the rest are digits of certificates.
 const SURE: f64 = 0.96;
-/// Estimated duration of a whole search, as a multiple of that of its first grades; and the same
-/// for the progress, between a search that ends with its first grade, and a whole one.
+/// Estimated duration of a whole search, as a multiple of that of its first grades.
 const SEARCH_OVER_FIRST: f64 = 1.7;
+/// The multiple for the progress: between a search that ends with its first grades, and a whole
+/// one.
 const EXPECTED_OVER_FIRST: f64 = 1.3;
 
 /// A grade with its error and bytes, predicted or measured.
@@ -52,8 +53,8 @@ struct Pick {
     measured: bool,
 }
 
-/// Grades to choose from: those measured, those too that may still be measured within the
-/// allowance, or all.
+/// Grades to choose from: those measured, also those that may be measured within the allowance, or
+/// all.
 #[derive(Clone, Copy, PartialEq)]
 enum Among {
     Measured,
@@ -85,8 +86,7 @@ struct Candidate {
 }
 
 impl Candidate {
-    /// `known` is what the groups before it have described: their axes and layouts are not
-    /// described again.
+    /// `known` has the axes and layouts that groups before this one describe.
     fn new(group: TableGroup, known: &mut Known) -> Self {
         let at = |level: i32| {
             let work = group.work(Level(level), 1);
@@ -101,7 +101,7 @@ impl Candidate {
             })
         };
         let menu = group.levels().flat_map(at).collect();
-        // With the scales of fixed point, the smallest grade.
+        // In fixed point, which has scales in the header, and the smallest grade.
         let header = group.header(Level::DEFAULT, PRECISIONS[0], known) as f64;
         let default_work = group.work(Level::DEFAULT, 1);
         let measured = Default::default();
@@ -110,7 +110,7 @@ impl Candidate {
         new
     }
 
-    /// Predicts errors and bytes of the menu, from the expected errors and the measured ones.
+    /// Predicts errors and bytes of the menu from expectations and measurements.
     fn predict(&mut self) {
         let mut menu = std::mem::take(&mut self.menu);
         for pick in &mut menu {
@@ -125,7 +125,7 @@ impl Candidate {
             return (error, bytes, true);
         }
         let expected = |level: Level| self.group.expected(level, PRECISIONS[precision]);
-        // Ratio of the measured error and size to those expected.
+        // Ratio of the measured error and number of values to those expected.
         let off =
             |(at, measured): (&Level, &Measured)| [measured.error / expected(*at), measured.growth];
         let below = measured.range(..level).next_back();
@@ -142,7 +142,7 @@ impl Candidate {
         (worse * expected(level), growth * values + self.header, false)
     }
 
-    /// The smallest grade that errs by no more than `max_error`.
+    /// The smallest grade whose error is at most `max_error`.
     fn smallest(&self, max_error: f64, among: Among) -> Option<Pick> {
         let limit = ALLOWANCE * self.default_work.max(self.spent);
         let is_affordable = |pick: &Pick| self.spent == 0.0 || self.spent + pick.work <= limit;
@@ -156,8 +156,8 @@ impl Candidate {
         self.menu.iter().filter(meets).min_by(|a, b| a.bytes.total_cmp(&b.bytes)).copied()
     }
 
-    /// The grade to take for a largest error, or to measure next: the finest, where none is
-    /// predicted to meet it.
+    /// The grade to take for a largest error, or to measure next; the finest, if none is predicted
+    /// to meet the error.
     fn meeting(&self, max_error: f64) -> Result<Pick, BakeError> {
         let next = self.smallest(max_error, Among::Affordable);
         let next = next.or_else(|| self.smallest(max_error, Among::All));
@@ -175,12 +175,11 @@ impl Candidate {
         }
     }
 
-    /// The precisions that are measured together: all, where that costs hardly more.
+    /// The precisions that are measured together.
     fn precisions(&self, asked: usize) -> Vec<usize> {
         if self.group.shares_measuring() { vec![0, 1] } else { vec![asked] }
     }
 
-    /// The work to measure a grade.
     fn work(&self, pick: &Pick) -> f64 {
         self.group.work(pick.level, self.precisions(pick.precision).len())
     }
@@ -211,7 +210,7 @@ fn candidates(groups: Vec<TableGroup>) -> Vec<Candidate> {
 /// Table groups to be chosen for a budget.
 pub(super) struct Search {
     candidates: Vec<Candidate>,
-    /// Work that was announced and is still to come.
+    /// Work that was announced and is not done yet.
     ahead: f64,
 }
 
@@ -288,13 +287,11 @@ impl Search {
         }
     }
 
-    /// Announces a search that begins with these grades, or refuses it if it would take longer than
-    /// allowed.
+    /// Announces a search that begins with these grades, or refuses it if it would take too long.
     fn begin(&mut self, picks: &[Pick], job: &Job) -> Result<(), BakeError> {
         let each = self.candidates.iter().zip(picks);
         let seconds = picks.iter().map(|pick| pick.work);
         let default = self.candidates.iter().map(|candidate| candidate.default_work);
-        // By the clock.
         let search = on_threads(SEARCH_OVER_FIRST * seconds.sum::<f64>());
         let default_seconds = on_threads(default.sum());
         if !job.patient && search > PATIENCE.max(3.0 * default_seconds) {
@@ -320,10 +317,10 @@ impl Search {
     }
 }
 
-/// The least bytes that a set of a plan is expected to have, with its coarsest tables.
+/// The expected bytes of the smallest set of a plan, with the coarsest tables.
 ///
 /// # Errors
-/// [`BakeError`] for a plan that is none.
+/// [`BakeError`] for a distribution of the plan that no material has.
 pub fn smallest_bytes(plan: &Plan) -> Result<usize, BakeError> {
     let candidates = candidates(TableGroup::apart(plan)?);
     let least = bytes(&coarsest(&candidates, Among::All).unwrap_or_default());
@@ -354,8 +351,8 @@ fn fitting_or_coarsest(candidates: &[Candidate], room: f64) -> Vec<Pick> {
     }
 }
 
-/// The grades with the smallest common error that fit into `room` bytes. Groups without a better
-/// grade leave their bytes to the others.
+/// The grades with the smallest common error that fit into `room` bytes. The bytes that groups
+/// without a better grade leave go to the others.
 fn fitting(candidates: &[Candidate], room: f64, among: Among) -> Option<Vec<Pick>> {
     let mut picks = coarsest(candidates, among).filter(|picks| bytes(picks) <= room)?;
     let mut free: Vec<usize> = (0..candidates.len()).collect();
@@ -377,8 +374,8 @@ fn fitting(candidates: &[Candidate], room: f64, among: Among) -> Option<Vec<Pick
         if let Some(found) = found {
             free.iter().zip(found).for_each(|(&i, pick)| picks[i] = pick);
         }
-        // The groups with the worst error have no better grade that fits: they keep theirs, and the
-        // error of the others is lowered further.
+        // The groups with the worst error have no better grade that fits. They keep their grades,
+        // and the error of the others is lowered further.
         let worst = free.iter().map(|&i| picks[i].error).fold(0.0, f64::max);
         free.retain(|&i| picks[i].error < worst / RATIO);
     }

@@ -29,7 +29,7 @@ pub struct AlbedoSpec {
     pub lobe: AlbedoLobe,
     /// The reflectance of the microfacets.
     pub reflectance: Reflectance,
-    /// The forms of masking; both together cost hardly more than one.
+    /// The forms of masking; both together take hardly longer than one.
     pub maskings: Vec<Masking>,
     /// The axes, that of the view last.
     pub axes: Vec<Axis>,
@@ -43,20 +43,21 @@ pub struct AlbedoSpec {
 const CLOSE_FROM: Level = Level(24);
 
 /// γ below which a dielectric has enough upright facets for a kink of its transmission: up to 1.9
-/// an axis in three parts errs less than one in two, at 3 more
-/// (`cargo run --profile dist -p microfacet-study -- dielectric_views`).
+/// an axis in three parts errs less than one in two, at 3 it errs more (`cargo run --profile dist
+/// -p microfacet-study -- dielectric_views`).
 const HEAVY: f64 = 2.0;
 
 impl AlbedoSpec {
     /// The specification at a level.
     ///
-    /// Tables for a part of the family are cut out of the general ones: one node for a single γ or
-    /// σ, else the nodes that interpolation reads in that range, so that values in between equal
-    /// those of the general tables. For other lobes it is the smallest table that is tried.
+    /// Tables of a range of the family are cut out of the general ones: one node for a single γ or
+    /// σ, else the nodes that interpolation reads in the range, so that values in between equal
+    /// those of the general tables. For other lobes it is the coarsest table of the
+    /// [refinement](Self::refined).
     ///
     /// # Errors
-    /// [`AlbedoError`] for parameters that describe no ellipsoid, or a reflectance that a table
-    /// cannot be of: see [`Reflectance::tabulated`].
+    /// [`AlbedoError`] for parameters that describe no ellipsoid, or a reflectance that no table is
+    /// of ([`Reflectance::tabulated`] gives those of tables).
     pub fn new(
         lobe: AlbedoLobe,
         reflectance: Reflectance,
@@ -72,7 +73,7 @@ impl AlbedoSpec {
         let mut axes = match azimuth(&lobe)? {
             None => materials(&lobe, nodes([16, 24, 44]), nodes([22, 38, 68])),
             Some(azimuth) => {
-                // 2ᵏ + 1 in a quarter of the azimuths to start with, as many as are tried first.
+                // 2ᵏ + 1 nodes in a quarter of the azimuths, before refinement.
                 let quarter = [5, 9, 17][quality];
                 let count = match lobe.form() {
                     // Its albedo is the same at every azimuth.
@@ -91,12 +92,12 @@ impl AlbedoSpec {
         let (view, views) = match lobe.is_family() {
             true if level >= CLOSE_FROM => (ViewBlend::CLOSE, nodes([20, 33, 58])),
             true => (ViewBlend::BAKED, nodes([20, 33, 58])),
-            // γ of a single lobe is a constant here, so that readers supply none; the number of
-            // nodes is doubled until the error is met.
+            // γ of a single lobe is a constant of the coordinate; the number of nodes is doubled
+            // until the error is met.
             false => (ViewBlend::BAKED.of_shape(tail(&lobe)), [17, 33, 65][quality]),
         };
         axes.push(if reflectance.side() == Some(Side::Dense) {
-            // E changes fast where total reflection sets in, and transmission where upright facets
+            // E changes fast where total reflection begins, and transmission where upright facets
             // begin to transmit: parts share a node there.
             let is_heavy = lobe.gamma.min < HEAVY;
             let is_single = reflectance.indices().is_some_and(Interval::is_point);
@@ -121,10 +122,9 @@ impl AlbedoSpec {
             .expect("the family is no ellipsoid")
     }
 
-    /// The specification that a directional table follows, of its form of masking alone; `None`
-    /// for a table of other values, and for one of a distribution that its label does not say.
-    ///
-    /// A table does not state the error aimed at in its nodes: a given one stands for it.
+    /// The specification of a directional table, for its form of masking alone; `None` for a table
+    /// of other values, and for one of a distribution that its label does not describe. `tolerance`
+    /// is the error aimed at in every node, which a table does not state.
     pub fn of_table(table: &Table, tolerance: f64) -> Option<Self> {
         let Subject { lobe, masking, reflectance } = &table.subject;
         let lobe = match (&lobe.distribution, table.axes.first()?.mapping) {
@@ -151,8 +151,9 @@ impl AlbedoSpec {
         finer
     }
 
-    /// How many times an axis may be [`refined`](Self::refined). How many nodes it takes depends on
-    /// the material, except for the moments of the family, whose nodes were found by measuring.
+    /// How many times an axis may be [`refined`](Self::refined): 0 for the moments of the family,
+    /// whose nodes were found by measuring. For others the number of nodes that is needed depends
+    /// on the material.
     pub fn doublings(&self) -> u32 {
         match (self.lobe.form(), self.reflectance) {
             (LobeForm::Family, Reflectance::Mirror) => 0,
@@ -185,8 +186,8 @@ impl AlbedoSpec {
         names(self.reflectance.channels()).into_iter().chain(clamp).collect()
     }
 
-    /// Whether tables of averages are baked as well: of more than one material, since an albedo of
-    /// one has its averages in itself.
+    /// Whether tables of averages are baked as well: for moments of more than one material, since
+    /// the averages of one follow from its albedo.
     pub fn has_averages(&self) -> bool {
         self.lobe.is_family()
             && self.reflectance == Reflectance::Mirror
@@ -212,7 +213,7 @@ impl AlbedoSpec {
         self.maskings.len() * (one + if self.has_averages() { averages } else { 0 })
     }
 
-    /// The subject in the description of a table.
+    /// The subject of a table.
     pub fn subject(&self, masking: Masking) -> Subject {
         let (masking, reflectance) = (Some(masking), Some(self.reflectance));
         Subject { masking, reflectance, ..Subject::of(stated(&self.lobe)) }
@@ -233,7 +234,6 @@ impl AlbedoSpec {
     }
 }
 
-/// Whether an axis is of the view, and not of the material.
 fn is_of_view(axis: &Axis) -> bool {
     let Axis { mapping, .. } = axis;
     matches!(mapping, Mapping::Azimuth(_) | Mapping::ViewBlend(_) | Mapping::CriticalBlend(_))

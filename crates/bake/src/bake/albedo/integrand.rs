@@ -1,4 +1,4 @@
-//! The reflectances that albedos are baked under, one variant each. **A new one goes here** and in
+//! The reflectances under which albedos are baked. A new one needs a variant here and in
 //! [`Reflectance`], which names its channels.
 
 use microfacet_model::Albedo;
@@ -9,11 +9,11 @@ use super::{AlbedoError, CHANNELS, Model, Site};
 
 /// A reflectance with its constants computed.
 pub enum Integrand {
-    /// F = 1, split into the parts of [`weights`].
+    /// F = 1, split by [`weights`].
     Moments,
     /// A conductor, one for each colour channel.
     Metal([Conductor; 3]),
-    /// A dielectric seen from one side; its index is that of the place.
+    /// A dielectric seen from one side; the index is that of the site.
     Pane(Side),
 }
 
@@ -42,11 +42,11 @@ impl Integrand {
         })
     }
 
-    /// The albedos at a place by quadrature, for both forms of masking; channels that the
+    /// The albedos at a site by quadrature, for both forms of masking; channels that the
     /// reflectance lacks are 0.
     ///
     /// # Errors
-    /// [`AlbedoError`] for a place outside the domain of the lobe, or a lobe without refraction.
+    /// [`AlbedoError`] for a site outside the domain of the lobe, or a lobe without refraction.
     pub fn at(&self, model: &Model<'_>, site: &Site) -> Result<Albedo<CHANNELS>, AlbedoError> {
         match self {
             Self::Moments => model.reflection(site, weights),
@@ -65,7 +65,7 @@ fn pane(side: Side, model: &Model<'_>, site: &Site) -> Result<Albedo<CHANNELS>, 
     }
     let eta = if side == Side::Dense { 1.0 / site.eta } else { site.eta };
     let pane = Dielectric::new(eta)?;
-    // Where total reflection sets in.
+    // The cosine at which total reflection begins.
     let kink = if eta < 1.0 { ((1.0 - eta) * (1.0 + eta)).sqrt() } else { 0.0 };
     let (model, sigma) = model.round(site)?;
     let reflectance = |cos: f64| [pane.reflectance(cos)];

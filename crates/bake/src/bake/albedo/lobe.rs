@@ -1,5 +1,5 @@
-//! The lobes that albedos are baked for, and their quadrature. **A new one goes here** and in
-//! [`LobeForm`].
+//! The lobes that albedos are baked for, and their quadrature. A new one needs a variant here and
+//! in [`LobeForm`].
 
 use std::collections::HashMap;
 
@@ -16,10 +16,11 @@ use microfacet_tables::{LobeForm, LobeSpec};
 use super::{AlbedoError, CHANNELS, Site};
 use crate::distribution::Distribution;
 
-/// The lobe, or range of round lobes, that one table of albedos is baked for.
+/// The lobe, or the range of round lobes, that a table of albedos is baked for.
 pub type AlbedoLobe = LobeSpec<Distribution>;
 
-/// The lobe as the description of a table states it: that of a distribution is of every scale.
+/// The lobe in the description of a table, where a distribution outside the family is of every
+/// scale.
 pub(crate) fn stated(lobe: &AlbedoLobe) -> LobeSpec {
     match &lobe.distribution {
         Some(distribution) => LobeSpec::outside(distribution.label()),
@@ -42,8 +43,8 @@ pub(super) fn azimuth(lobe: &AlbedoLobe) -> Result<Option<Azimuth>, AlbedoError>
     })
 }
 
-/// The shape γ that sets κ of the view's coordinate: that of the masking's tail, for a single lobe.
-/// Outside the family the tail is not known, and γ of a short tail serves.
+/// The shape γ that sets κ of the view coordinate of a single lobe, by the tail of its masking.
+/// Outside the family the tail is not known; γ of a short tail is used.
 pub(super) fn tail(lobe: &AlbedoLobe) -> f64 {
     match lobe.form() {
         LobeForm::StudentT | LobeForm::Ellipsoid => lobe.gamma.min,
@@ -51,7 +52,7 @@ pub(super) fn tail(lobe: &AlbedoLobe) -> f64 {
     }
 }
 
-/// A tilted lobe, whose masking is clamped.
+/// The ellipsoid of a lobe with a tilt.
 pub(crate) fn ellipsoid(lobe: &AlbedoLobe) -> Result<Ellipsoid, AlbedoError> {
     let refused = |why: EllipsoidError| AlbedoError::Lobe(why.to_string());
     let theta = lobe.theta.ok_or_else(|| AlbedoError::Lobe("the lobe is not tilted".into()))?;
@@ -67,11 +68,11 @@ pub(crate) fn area_ratio(ellipsoid: &Ellipsoid, site: &Site) -> f64 {
     ellipsoid.projected_area(DVec3::new(sin * c, sin * s, site.cos)) / site.cos
 }
 
-/// The spread of slopes about zero: the principal values of σ_φ² + t_φ² (roughness and mean slope
-/// seen from the azimuth φ), and the azimuth of the first.
+/// The spread of slopes about zero: the roots of the principal values of σ_φ² + t_φ² (roughness and
+/// mean slope along the azimuth φ), and the azimuth of the first.
 ///
-/// Where cot θ is about the mean slope, a lobe that leans away masks, and one that leans forward
-/// reflects below the horizon.
+/// The mean slope counts because E changes where cot θ is about the mean slope: there a lobe that
+/// leans away from the view masks, and one that leans towards it reflects below the horizon.
 fn spread(ellipsoid: &Ellipsoid) -> ([f64; 2], f64) {
     let Skew { p, q, r, x, y } = ellipsoid.skew();
     let (a, b, c) = (p * p + q * q + x * x, q * r + x * y, r * r + y * y);
@@ -101,7 +102,7 @@ impl Models<'_> {
     ) -> Result<T, AlbedoError> {
         let integrator =
             |gamma| Ok::<_, AlbedoError>(AlbedoIntegrator::new(Shape::new(gamma)?, tolerance));
-        // Places of a single lobe have no γ.
+        // Sites of a single lobe have γ = ∞.
         let one = |model| Models([(f64::INFINITY.to_bits(), model)].into());
         let gamma = lobe.gamma.min;
         if let Some(distribution) = &lobe.distribution {
@@ -123,7 +124,7 @@ impl Models<'_> {
         }
     }
 
-    /// The lobe at a place.
+    /// The lobe at a site.
     ///
     /// # Panics
     /// If its shape was not prepared.
@@ -134,7 +135,7 @@ impl Models<'_> {
 
 /// One lobe by quadrature.
 pub enum Model<'a> {
-    /// A Student-t lobe with these σx and σy, or with the σ of the place.
+    /// A Student-t lobe with these σx and σy, or with the σ of the site.
     StudentT(Option<[f64; 2]>, AlbedoIntegrator),
     /// An ellipsoid.
     Ellipsoid(Ellipsoid, AlbedoIntegrator),
@@ -164,7 +165,7 @@ impl Model<'_> {
         })
     }
 
-    /// The isotropic lobe of the family with the σ of the place; it has a model of refraction.
+    /// The isotropic lobe of the family and its σ; the model has refraction for no other lobe.
     pub(super) fn round(&self, site: &Site) -> Result<(&AlbedoIntegrator, f64), AlbedoError> {
         match self {
             Self::StudentT(None, model) => Ok((model, site.sigma)),
@@ -174,13 +175,14 @@ impl Model<'_> {
         }
     }
 
-    /// [`area_ratio`] of an ellipsoid.
+    /// [`area_ratio`], `None` unless it is an ellipsoid.
     pub(super) fn area_ratio(&self, site: &Site) -> Option<f64> {
         let Self::Ellipsoid(ellipsoid, _) = self else { return None };
         Some(area_ratio(ellipsoid, site))
     }
 
-    /// The albedo of the isotropic lobe with the same shape and this roughness.
+    /// The albedo of the isotropic lobe of the same γ and this roughness; `None` outside the
+    /// family.
     ///
     /// # Errors
     /// As [`reflection`](Self::reflection).

@@ -1,12 +1,10 @@
 //! Bakes directional albedos of any lobe under any reflectance, for both forms of masking in one
-//! pass.
+//! pass over the nodes: [`Model`] is the lobe by quadrature, [`Integrand`] the reflectance.
 //!
-//! One loop runs over the nodes of a specification's axes: [`Model`] is the lobe by quadrature,
-//! [`Integrand`] the reflectance. For the moments (F = 1 and its parts) a table holds E − 1 and, of
-//! the other moments, their excess over E times a mirror's, all of which vanish with σ; for exact
-//! reflectances it holds the shares of light. Nodes are spaced evenly in coordinates found by
-//! measuring. Averages are integrated from the stored, interpolated albedo, so that a white furnace
-//! closes to rounding rather than to the interpolation error.
+//! For the moments a table holds E − 1 and, of the other moments, their excess over E times a
+//! mirror's, all of which vanish with σ; for exact reflectances it holds the shares of light.
+//! Averages are integrated from the stored, interpolated albedo, so that a white furnace closes to
+//! rounding rather than to the interpolation error.
 
 mod albedo_spec;
 mod integrand;
@@ -34,12 +32,12 @@ pub(crate) use lobe::{area_ratio, ellipsoid, stated};
 /// Most channels of any integrand.
 pub const CHANNELS: usize = 3;
 
-/// A material and a view: a place on the axes of a table.
+/// A material and a view, as given by coordinates along the axes of a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Site {
-    /// γ, for tables with such an axis; else ∞, on which their view coordinate does not depend.
+    /// γ, for tables with such an axis; else ∞, since their view coordinate does not depend on γ.
     pub gamma: f64,
-    /// σ, or the roughness that a lobe shows at the azimuth.
+    /// σ, or the roughness of a lobe along the azimuth.
     pub sigma: f64,
     /// Index of the dense side of a dielectric over that of the thin side.
     pub eta: f64,
@@ -50,7 +48,7 @@ pub struct Site {
 }
 
 impl Site {
-    /// The place at a coordinate along each axis.
+    /// The site at these coordinates, one for each axis.
     pub fn new(axes: &[Axis], at: &[f64]) -> Self {
         let mut site =
             Self { gamma: f64::INFINITY, sigma: f64::NAN, eta: f64::NAN, phi: 0.0, cos: f64::NAN };
@@ -71,7 +69,7 @@ impl Site {
         site
     }
 
-    /// cos θ at a coordinate along the axis of the view, for the material of the place.
+    /// cos θ at a coordinate along the axis of the view, for the material of the site.
     pub(crate) fn cos_at(&self, axis: &Axis, t: f64) -> f64 {
         match axis.mapping {
             Mapping::ViewBlend(view) => view.prepare(self.sigma, self.gamma).quantity(t),
@@ -89,7 +87,7 @@ impl Site {
         Vec3::new((sin * c) as f32, (sin * s) as f32, self.cos as f32)
     }
 
-    /// All places of a table, the last axis fastest.
+    /// The sites of all nodes, the last axis fastest.
     pub(crate) fn all(axes: &[Axis]) -> Vec<Self> {
         product(axes.iter().map(|axis| &axis.nodes[..]))
             .into_par_iter()
@@ -125,7 +123,7 @@ pub enum AlbedoError {
     /// quadrature, which must not reach a table.
     #[error("albedo {value} at {at}: it must lie in [0, 1]; please report it")]
     Albedo {
-        /// The place.
+        /// The site of the node.
         at: Site,
         /// The value.
         value: f64,
@@ -136,7 +134,7 @@ pub enum AlbedoError {
          recipe's ranges of sigma and gamma, and please report it"
     )]
     Accuracy {
-        /// The place.
+        /// The site of the node.
         at: Site,
         /// The estimate.
         error: f64,
@@ -144,7 +142,7 @@ pub enum AlbedoError {
     /// The lobe has no such albedo.
     #[error("{0}")]
     Lobe(String),
-    /// A table does not cover the material it was baked for.
+    /// A table does not cover the material that it was baked for.
     #[error(transparent)]
     Material(#[from] MaterialError),
     /// The tables could not be loaded.
@@ -208,8 +206,8 @@ struct Node {
 /// its last order; the worst of `tables/recipes/brushed-metals.toml` reaches 26. The certificate
 /// states what was reached.
 const SLACK: f64 = 100.0;
-/// Where less than this share of the microsurface is visible, E is smaller still, and their
-/// quotient is not meaningful.
+/// Where less than this share of the microsurface is visible, E is smaller still, and the quotient
+/// of both is not meaningful.
 const UNSEEN: f64 = 1e-6;
 
 fn node(
@@ -221,7 +219,7 @@ fn node(
     let mut values = integrand.at(model, site)?;
     let ratio = model.area_ratio(site);
     let clamp = ratio.map(|ratio| 1.0 / (1.0 + ratio));
-    // The factor that the clamp of G1(v) leaves in the shares is divided out.
+    // The clamp of G1(v) leaves this factor in the shares, which is divided out.
     let share = ratio.unwrap_or(1.0).min(1.0);
     if share < UNSEEN {
         (values.uncorrelated, values.height_correlated) = Default::default();
@@ -235,7 +233,7 @@ fn node(
         let sound = |x: f64| {
             x >= -values.error / share && x <= 1.0 + (values.error + spec.tolerance) / share
         };
-        // Checked before clamping: a wrong sum must be seen.
+        // Checked before clamping, which would hide a wrong sum.
         match spec.reflectance {
             Reflectance::Mirror => {
                 let e = form[0] + form[1];

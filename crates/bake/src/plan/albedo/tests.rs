@@ -1,11 +1,11 @@
-//! What is planned, held against a plan that compares everything with everything.
+//! Compares plans with those of an exhaustive comparison of all materials.
 
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
 use super::*;
 
-/// The required albedos by comparison of all with all, in the order in which they are baked.
+/// The required albedos by comparison of all with all.
 fn by_comparison(
     scene: &Scene,
     options: Options,
@@ -59,7 +59,7 @@ fn by_comparison(
     Ok((needs, verdicts))
 }
 
-/// The groups of `joined`, found by comparison.
+/// `joined`, by comparison of all with all.
 fn joined_by_comparison(wants: Vec<AlbedoLobe>) -> Vec<AlbedoLobe> {
     let mut groups: Vec<Vec<AlbedoLobe>> = Vec::new();
     for want in wants {
@@ -72,7 +72,7 @@ fn joined_by_comparison(wants: Vec<AlbedoLobe>) -> Vec<AlbedoLobe> {
     least(groups)
 }
 
-/// A recipe of materials whose values are often the same and often not.
+/// A recipe of materials with some equal and some different values.
 fn recipe(rng: &mut StdRng, materials: usize) -> String {
     let mut pick = |all: &[&str]| all[rng.random_range(0..all.len())].to_owned();
     let numbers: Vec<String> = (2..40).map(|i| format!("0.{i:02}")).collect();

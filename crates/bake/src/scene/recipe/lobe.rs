@@ -17,11 +17,9 @@ use crate::input::normals::{MeasuredError, read_csv};
 use crate::scene::{LobeSpec, Roughness, SceneError, limits};
 use crate::table_spec::GAMMA_MIN;
 
-/// What a material says of its normals.
 type Lobe = LobeSpec<Distribution>;
 
 impl Entry<'_> {
-    /// The lobe of a material.
     pub(super) fn lobe(self) -> Result<Lobe, SceneError> {
         if let Some(distribution) = self.field("distribution") {
             return distribution.distribution(self);
@@ -41,7 +39,7 @@ impl Entry<'_> {
         Ok(Lobe { theta, ..Lobe::family(roughness, gamma) })
     }
 
-    /// The lobe of a material with a named distribution; as a Student-t if it is one.
+    /// The lobe of a material with a `distribution`; of the family if the distribution is a member.
     fn distribution(self, material: Self) -> Result<Lobe, SceneError> {
         let common = ["name", "distribution", "fresnel", "masking"];
         let distribution = if let Some(name) = self.text() {
@@ -49,7 +47,7 @@ impl Entry<'_> {
             material.only_keys(&[&common, kind.parameters()].concat())?;
             let parameter = |key: &&'static str| match material.field(key) {
                 Some(value) => value.number(),
-                // An exponent, or a width or a shape.
+                // The example is of an exponent, or else of a width or a shape.
                 None => self.invalid(format!(
                     "distribution \"{name}\" has no `{key}`; add for example {key} = {}",
                     if *key == "n" { "50" } else { "0.3" }

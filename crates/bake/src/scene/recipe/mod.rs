@@ -5,7 +5,7 @@
 //! name = "frosted glass"
 //! sigma = 0.454                  # or [x, y], or { min = .., max = .. }; 0 is smooth
 //! gamma = 3.0                    # or "inf" (Beckmann), or { min = .., max = .. }
-//! fresnel = { dielectric = 1.5 } # may be absent, as may masking
+//! fresnel = { dielectric = 1.5 } # optional, as is masking
 //! masking = "height-correlated"
 //! ```
 //!
@@ -33,7 +33,7 @@ use super::limits::{self, Budget};
 use super::{Format, Material, Origin, Place, Scene, SceneError, SceneErrorKind};
 use crate::input;
 
-// docs/recipe.md has each of these.
+// `docs/recipe.md` has every key.
 const MATERIAL_KEYS: [&str; 8] =
     ["name", "sigma", "gamma", "theta", "degrees", "distribution", "fresnel", "masking"];
 const MEASURED_KEYS: [&str; 2] = ["measured", "degrees"];
@@ -41,7 +41,6 @@ const FRESNEL_KEYS: [&str; 4] = ["schlick", "metal", "conductor", "dielectric"];
 const CONDUCTOR_KEYS: [&str; 2] = ["eta", "k"];
 const RANGE_KEYS: [&str; 2] = ["min", "max"];
 
-/// Reads the recipe in `file`.
 pub(super) fn load(file: &Path) -> Result<Scene, SceneError> {
     let place = Place::file(file);
     let text = input::read_text(file, limits::RECIPE).map_err(|error| match error.kind() {
@@ -49,7 +48,7 @@ pub(super) fn load(file: &Path) -> Result<Scene, SceneError> {
         _ => place.io(error),
     })?;
     read(&text, file).map_err(|error| {
-        // Much else is written in TOML.
+        // A file of TOML without materials may be of another program.
         let is_ours = |line: &str| line.trim_start_matches(['[', ' ']).starts_with("material");
         match error.kind {
             SceneErrorKind::Invalid(why) if !text.lines().any(is_ours) => error.place.foreign(why),
@@ -58,17 +57,17 @@ pub(super) fn load(file: &Path) -> Result<Scene, SceneError> {
     })
 }
 
-/// Reads the recipe `text`, the content of `file`.
 pub(super) fn read(text: &str, file: &Path) -> Result<Scene, SceneError> {
     read_parts(text, file, parts(text), limits::RECIPE_MATERIALS)
 }
 
-/// The parts of a recipe, which are parsed one by one so that memory holds the tree of one alone:
-/// from one line with `[[material]]` to the next, and all before the second.
+/// The parts of a recipe, which are parsed one by one so that memory holds the tree of one part
+/// only: from one line with `[[material]]` to the next, and all before the second.
 ///
-/// The tree of a part does not depend on those before it, since nothing but materials may stand at
-/// the top of a recipe; the first has all that may come before, such as another `material`. A text
-/// with strings of several lines, in which the same line may stand, is one part.
+/// The tree of a part does not depend on the parts before it, since a recipe has nothing but
+/// materials at its top; the first part holds anything that may come before them, such as another
+/// `material`. A text with strings of several lines, which may contain the line `[[material]]`, is
+/// one part.
 fn parts(text: &str) -> Vec<Range<usize>> {
     let mut headers = Vec::new();
     if !text.lines().any(begins_long_string) {
@@ -94,8 +93,8 @@ fn is_header(line: &str) -> bool {
     after.is_some_and(|after| after.trim_start_matches(blank).starts_with("]]"))
 }
 
-/// Whether a line may begin a string of several lines: not in a comment, which begins with a `#`
-/// before any string.
+/// Whether a line may begin a string of several lines; a comment, with `#` before any quote, does
+/// not.
 fn begins_long_string(line: &str) -> bool {
     let code = match line.split_once('#') {
         Some((before, _)) if !before.contains(['"', '\'']) => before,
@@ -104,7 +103,8 @@ fn begins_long_string(line: &str) -> bool {
     code.contains("\"\"\"") || code.contains("'''")
 }
 
-/// Reads it part by part, and at most so many materials; the first part with an error ends it.
+/// Reads a recipe part by part, up to the first part with an error; more than `most` materials are
+/// an error.
 fn read_parts(
     text: &str,
     file: &Path,
@@ -123,7 +123,7 @@ fn read_parts(
         warnings: RefCell::default(),
     };
     let mut materials: Vec<Material> = Vec::new();
-    // The line that each name is from.
+    // The line of each name.
     let mut names: HashMap<String, u32> = HashMap::new();
     for part in parts {
         (source.text, source.start) = (&text[part.clone()], part.start);
@@ -156,12 +156,11 @@ fn read_parts(
 struct Source<'a> {
     /// The part; spans of parsed values are relative to it.
     text: &'a str,
-    /// Where it begins in the recipe.
+    /// The offset of the part in the recipe.
     start: usize,
     file: &'a Path,
-    /// Those of the whole recipe.
+    /// The lines of the whole recipe.
     lines: &'a Lines<'a>,
-    /// Bytes of measured distributions.
     measured: Budget,
     distributions: Budget,
     warnings: RefCell<Vec<String>>,
@@ -172,7 +171,6 @@ impl Source<'_> {
         self.lines.place(self.start + span.start)
     }
 
-    /// The materials of the part, in order.
     fn materials(&self) -> Result<Vec<Material>, SceneError> {
         if self.text.len() as u64 > limits::RECIPE_PART {
             return Err(self.place(0..0).invalid(format!(
@@ -214,7 +212,7 @@ impl<'a> Entry<'a> {
         self.source.place(self.value.span())
     }
 
-    /// The value as the recipe has it.
+    /// The value as it is written in the recipe.
     fn written(self) -> &'a str {
         self.source.text.get(self.value.span()).unwrap_or("this")
     }
@@ -248,13 +246,12 @@ impl<'a> Entry<'a> {
         self.value.get_ref().as_array().map(|list| &list[..])
     }
 
-    /// The values of a list of so many.
+    /// The values of a list of N.
     fn list_of<const N: usize>(self) -> Option<[Self; N]> {
         let list: &[_; N] = self.list()?.try_into().ok()?;
         Some(list.each_ref().map(|value| self.with(value)))
     }
 
-    /// What a table has under a key.
     fn field(self, key: &'a str) -> Option<Self> {
         let value = self.table()?.get(key)?;
         Some(Self { key, value, ..self })
@@ -267,7 +264,7 @@ impl<'a> Entry<'a> {
         })
     }
 
-    /// Checks that a table has no other keys; what is no table has none.
+    /// Checks that a table has no other keys; a value that is no table passes.
     fn only_keys(self, known: &[&str]) -> Result<(), SceneError> {
         let mut keys = self.table().into_iter().flat_map(|table| table.keys());
         match keys.find(|key| !known.contains(&key.get_ref().as_ref())) {
@@ -325,7 +322,7 @@ impl<'a> Entry<'a> {
         let number = match self.value.get_ref() {
             DeValue::Integer(digits) if digits.radix() == 10 => digits.as_str().parse().ok(),
             DeValue::Float(digits) => digits.as_str().parse().ok(),
-            // TOML has `inf` alone; in quotes it is what Rust reads, in upper case or lower.
+            // TOML has `inf` only; in quotes every name of infinity that Rust parses is allowed.
             DeValue::String(text) => text.trim().parse().ok().filter(|x: &f64| x.is_infinite()),
             _ => None,
         };

@@ -14,7 +14,7 @@ fn the_page_of_recipes_has_every_key() {
     }
 }
 
-/// What is read, or the message, part by part and at once.
+/// What is read, or the message: part by part, and at once.
 fn both(text: &str) -> [String; 2] {
     let file = Path::new("r");
     [read(text, file), read_parts(text, file, Some(0..text.len()), 100)].map(
@@ -64,7 +64,7 @@ const ODD: [&str; 32] = [
     "masking = \"uncorrelated\"\r",
 ];
 
-/// Lists that are open where a part begins: the part before them is refused for that.
+/// Lists that are open where a part begins; the part before is refused for that.
 const OPEN: [&str; 3] = [
     "theta = [0.1, 0.2\n",
     "theta = [0.1,\n[[material]]\n, 0.2]\n",

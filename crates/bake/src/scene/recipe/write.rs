@@ -1,4 +1,4 @@
-//! Materials as a recipe.
+//! Writes materials as a recipe.
 
 use std::fmt::Write as _;
 
@@ -24,12 +24,11 @@ fn entry(material: &MaterialEntry) -> String {
     let label = material.lobe.distribution.as_ref();
     let _ = match label.map(|label| (Distribution::measured_of(label), label.parse::<Named>())) {
         None => writeln!(text, "sigma = {sigma}\ngamma = {}", range(material.lobe.gamma)),
-        // The file stays as it is, and so does its unit.
         Some((Some((file, angles)), _)) => {
             let unit = if angles == Angles::Degrees { ", degrees = true" } else { "" };
             writeln!(text, "distribution = {{ measured = {}{unit} }}", quoted(file))
         }
-        // No bake writes such a label, and no recipe can say it.
+        // A label that no bake writes and no recipe can express.
         Some((None, Err(_))) => writeln!(text, "# of the distribution {label:?}"),
         Some((None, Ok(named))) => {
             let number = |x: f64| range(Interval::point(x));

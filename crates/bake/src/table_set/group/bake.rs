@@ -1,4 +1,4 @@
-//! The tables of a group: read from the cache, or baked, certified and kept.
+//! The tables of a group: read from the cache, or baked, certified and cached.
 
 use std::time::Instant;
 
@@ -20,7 +20,7 @@ use crate::progress::Meter;
 use crate::table_spec::{Level, TableSpec};
 
 impl TableGroup {
-    /// The cache key of the tables: everything that their values depend on.
+    /// The cache key of the tables, with all that their values depend on.
     pub(in crate::table_set) fn key(&self, level: Level, precision: Precision) -> String {
         match self {
             Self::Normals(need, _) => {
@@ -68,7 +68,6 @@ impl TableGroup {
         Ok(sets)
     }
 
-    /// Keeps new tables in the cache.
     fn finish(&self, keys: &[String], sets: Vec<Vec<Table>>, job: &mut Job) -> Vec<Vec<Table>> {
         for (key, tables) in keys.iter().zip(&sets) {
             job.made(tables);
@@ -92,7 +91,7 @@ impl TableGroup {
         let bake = |spec: &TableSpec| bake::bake(spec, &stage(normals_work(spec)[0]));
         let mut full = Vec::new();
         for spec in &specs {
-            // Kept in full precision: storing does not change the values.
+            // Cached in single precision, of which other precisions are roundings.
             let key = format!("{spec:?}");
             let is_it = |tables: &[Table]| tables.len() == 1 && is_of(&tables[0], spec);
             full.push(match job.get(&key, is_it).and_then(|mut tables| tables.pop()) {
@@ -103,7 +102,7 @@ impl TableGroup {
                 None => {
                     let table = bake(spec);
                     job.made([&table]);
-                    // A slice is baked as fast as it is read.
+                    // A slice is not cached here, since it is baked as fast as it is read.
                     if !need.gamma().is_point() {
                         job.keep(&key, std::slice::from_ref(&table));
                     }

@@ -1,8 +1,5 @@
-//! Whether what a cache holds is what a group asks for: a file with the right key may hold
-//! anything.
-//!
-//! Values and certificates are believed, as they are in any set: whoever can write to the cache is
-//! trusted with the numbers, and with nothing else.
+//! Checks that tables from a cache are those that a group asks for, since a file with the right key
+//! may hold any tables. Values and certificates are not checked, as in any set that is read.
 
 use microfacet_tables::{Axis, Kind, Precision, Subject, Table};
 
@@ -12,7 +9,7 @@ use crate::bake::{self, radial_axes, radial_subject};
 use crate::table_spec::{Level, TableSpec};
 
 impl TableGroup {
-    /// Whether these are tables of this group, in a level and precision, and certified.
+    /// Whether these are the tables of this group at a level and precision, with certificates.
     pub(in crate::table_set) fn asks_for(
         &self,
         tables: &[Table],
@@ -45,8 +42,8 @@ pub(super) fn is_of(table: &Table, spec: &TableSpec) -> bool {
         && channels == Kind::VALUE_AND_SLOPE
 }
 
-/// The constants of some coordinates depend on the distribution, which takes long to build, and go
-/// with the values.
+/// The mappings of axes are not compared: their constants depend on the distribution, which takes
+/// long to build.
 fn is_radial(tables: &[Table], label: &str, level: Level, precision: Precision) -> bool {
     let subject = radial_subject(label);
     let is_axis = |axis: &Axis, asked: &Axis| {
@@ -63,7 +60,7 @@ fn is_radial(tables: &[Table], label: &str, level: Level, precision: Precision) 
     all(tables, &radial_axes(level, 1.0, f64::INFINITY), is)
 }
 
-/// A refined table has more nodes along its axes.
+/// Axes may have more nodes than asked for, since tables are refined.
 fn is_albedo(tables: &[Table], spec: &AlbedoSpec) -> bool {
     let averages = spec.has_averages().then_some(Kind::AlbedoAverage);
     let kinds = [Some(Kind::Albedo), averages];

@@ -1,4 +1,4 @@
-//! Table groups: tables that are chosen, baked, measured and kept together.
+//! Table groups: tables that are chosen, baked, certified and cached together.
 
 mod bake;
 mod kept;
@@ -18,7 +18,7 @@ use crate::plan::{
 };
 use crate::table_spec::{Level, Quality, TableSpec, general_set};
 
-/// A group of tables, by what they hold.
+/// A table group, by what its tables hold.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum TableGroup {
@@ -30,20 +30,21 @@ pub(super) enum TableGroup {
     Albedo(RequiredAlbedo),
 }
 
-/// Some of the tables of the general set.
+/// The tables of a group, by those of the general set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Parts {
     All,
     Shadowing,
     Slope,
-    /// The shares of light that the peeled slopes use come from the masking: both go together.
+    /// Masking and peeled slopes for γ < 1.8: both together, since the shares of light that the
+    /// peeled slopes use come from the masking.
     Peeled,
     Across,
 }
 
 impl Parts {
-    /// Parts that can be refined apart from each other: the error of each does not depend on the
+    /// Parts that can be refined independently, since the error of each does not depend on the
     /// others.
     const APART: [Self; 4] = [Self::Shadowing, Self::Peeled, Self::Slope, Self::Across];
 
@@ -58,8 +59,8 @@ impl Parts {
         }
     }
 
-    /// The other tables that make a material together with these. The error of slopes is measured
-    /// up to the seam, from their own table alone: so tables beyond it are left out.
+    /// The other tables without which these make no lobe. The error of slopes is measured only up
+    /// to the seam, so tables beyond it are left out.
     fn others(self) -> &'static [usize] {
         match self {
             Self::All => &[],
@@ -72,7 +73,7 @@ impl Parts {
 }
 
 impl TableGroup {
-    /// The groups of a plan at one quality.
+    /// The groups of a plan whose tables all have one quality.
     pub(super) fn whole(plan: &Plan) -> Result<Vec<Self>, BakeError> {
         let normals = plan.shapes.iter().map(|&need| Self::Normals(need, Parts::All));
         Ok(normals.chain(Self::others(plan)?).collect())
@@ -99,7 +100,7 @@ impl TableGroup {
         plan.distributions.iter().map(of).chain(albedos).collect()
     }
 
-    /// The group's name in messages.
+    /// The name in messages.
     pub(super) fn name(&self) -> String {
         match self {
             Self::Normals(..) => {
@@ -111,8 +112,8 @@ impl TableGroup {
         }
     }
 
-    /// Levels to choose from: from the coarsest that is worth storing to the finest that single
-    /// precision resolves, or that time allows.
+    /// The levels of a search: from the coarsest that is worth storing to the finest that single
+    /// precision resolves, or that bakes in reasonable time.
     pub(super) fn levels(&self) -> std::ops::RangeInclusive<i32> {
         match self {
             Self::Normals(..) => -5 * Level::STEP..=3 * Level::STEP,
@@ -121,8 +122,8 @@ impl TableGroup {
     }
 
     /// The error expected before anything is measured: that of the general set in the three
-    /// qualities, as `microfacet-bake bake --out out --quality Q --precision P` prints it, and what
-    /// fixed point adds.
+    /// qualities, as `microfacet-bake bake --out out --quality Q --precision P` prints it, and the
+    /// error that fixed point adds.
     pub(super) fn expected(&self, level: Level, precision: Precision) -> f64 {
         let [single, fixed] = match self {
             Self::Normals(_, Parts::Shadowing) => [[7.5e-6, 4.0e-6, 1.4e-6], [2.5e-6; 3]],
@@ -142,14 +143,14 @@ impl TableGroup {
         !matches!(self, Self::Normals(need, _) if !need.gamma().is_point())
     }
 
-    /// Specifications of the tables of visible normals; empty for other groups.
+    /// The specifications of the tables of visible normals; empty for other groups.
     fn specs(&self, level: Level, precision: Precision) -> Vec<TableSpec> {
         let Self::Normals(need, parts) = self else { return Vec::new() };
         let general = general_set(level, precision);
         parts.indices().iter().filter_map(|&i| need.cut(&general[i])).collect()
     }
 
-    /// Draft tables that make a material together with those of a part of the set.
+    /// Draft tables without which those of the group make no lobe.
     fn other_specs(&self) -> Vec<TableSpec> {
         let Self::Normals(need, parts) = self else { return Vec::new() };
         let draft = general_set(Level::DRAFT, Precision::F32);
@@ -165,7 +166,7 @@ impl TableGroup {
             Self::Distribution(distribution, _) => {
                 known.radial(&distribution.label(), level, precision)
             }
-            // An invalid specification has none; `cost` and the bake report what is wrong with it.
+            // An invalid specification counts 0 bytes; `cost` and the bake return its error.
             Self::Albedo(need) => need.spec(level, precision).map_or(0, |spec| known.albedo(&spec)),
         }
     }
@@ -179,7 +180,7 @@ impl TableGroup {
         }
     }
 
-    /// What the group is expected to add to a set, whose tables before it are `known`.
+    /// What the group is expected to add to a set in which `known` is described already.
     ///
     /// # Errors
     /// [`BakeError::Albedo`] for an albedo that no table can hold.
@@ -209,7 +210,8 @@ impl TableGroup {
         }
     }
 
-    /// The work of [`bake`](Self::bake) in so many precisions, in estimated seconds of one thread.
+    /// The work of [`bake`](Self::bake) in a number of precisions, in estimated seconds of one
+    /// thread.
     pub(super) fn work(&self, level: Level, precisions: usize) -> f64 {
         let sum = |[bake, certify]: [f64; 2]| bake + precisions as f64 * certify;
         match self {
