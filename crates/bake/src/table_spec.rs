@@ -117,8 +117,8 @@ pub fn general_set(level: impl Into<Level>, precision: Precision) -> Vec<TableSp
         numbers,
         precision,
     };
-    // Crowded shapes: next to γ = 3/2 G1 changes with the logarithm of 2 − s, and next to the seam
-    // the slopes of grazing views change fast; even nodes in s leave most of the error there.
+    // Crowded shapes: G1 changes with the logarithm of 2 − s next to γ = 3/2, and with even nodes
+    // in s most of the error of slopes is at grazing views next to the seam.
     let (range, crowded) = (ShapeAxis::range, ShapeAxis::crowded);
     let peeled = crowded(whole, heaviest, r.shadowing_shapes, 2.0);
     let peeled = spec(Kind::Shadowing, peeled, r.peeled_shadowing_views, 0);

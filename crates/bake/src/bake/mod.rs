@@ -85,7 +85,7 @@ fn shapes(spec: &TableSpec) -> Vec<Shape> {
     spec.shapes.nodes.iter().map(shape).collect()
 }
 
-/// Rounds (value, slope) pairs to f32: the only place where a bake rounds.
+/// Rounds (value, slope) pairs to f32; no other function of a bake rounds them.
 fn round(nodes: impl IntoIterator<Item = [f64; 2]>) -> Vec<[f32; 2]> {
     nodes.into_iter().map(|[value, slope]| [value as f32, slope as f32]).collect()
 }

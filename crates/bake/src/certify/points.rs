@@ -15,7 +15,7 @@ use microfacet_tables::{Axis, Interval, Mapping};
 use super::certificate::low_discrepancy;
 use crate::bake::albedo::{AlbedoSpec, Site, area_ratio, ellipsoid, product};
 
-/// Smallest σ and cos θ of the domain that certificates promise errors for.
+/// Smallest σ and cos θ of the promised domain, for which certificates state the largest error.
 const PROMISED: (f64, f64) = (0.01, 0.02);
 /// Smallest σ that is not a mirror.
 const SMOOTHEST: f64 = LogRoughness::BAKED.first;
@@ -319,8 +319,8 @@ pub(super) fn has_crease(spec: &AlbedoSpec) -> bool {
     Crease::of(spec).is_some()
 }
 
-/// The points at which the crease of a tilted lobe crosses lines of equal azimuth and of equal cos
-/// θ, [`LINES`] in each cell; none for other lobes.
+/// The points at which the crease of a tilted lobe crosses lines of equal azimuth and of equal
+/// view, several in each cell; none for other lobes.
 pub fn crease(spec: &AlbedoSpec) -> Vec<Point> {
     let Some(crease) = Crease::of(spec) else { return Vec::new() };
     let lines = |(k, axis): (usize, &Axis)| {

@@ -158,7 +158,7 @@ impl<'a> Ruler<'a> {
     }
 
     /// The error at coordinates along the axes, in shares of what is read of them; of slopes
-    /// across, the largest over all views of [`SLANTS`].
+    /// across, the largest over all slanted views.
     pub fn error(&self, kind: Kind, [first, u]: [f64; 2]) -> f64 {
         let cells = |axis: usize| (self.axes[axis].nodes.len() - 1) as f64;
         let place = first * cells(0) * read(kind, &self.axes[0]);

@@ -79,8 +79,8 @@ impl Receipts {
         for path in paths {
             let text = input::read_text(&path, MAX_TEXT).ok();
             let receipt = text.and_then(|text| serde_json::from_str::<Receipt>(&text).ok());
-            // A number of shards that is not limited could make a list of missing ones that fits no
-            // memory.
+            // A file may state any number of shards; without a limit, the list of missing ones
+            // might exceed the memory.
             let exists =
                 |receipt: &Receipt| Shard { number: receipt.shard, of: receipt.of }.exists();
             match receipt.filter(exists) {
@@ -114,7 +114,7 @@ impl Receipts {
             ended.entry(receipt.of).or_default().insert(receipt.shard);
         }
         let mut doubts = Vec::new();
-        // The number of shards of which most are done.
+        // The N of which the most shards are done.
         if let Some((&of, ended)) = ended.iter().max_by_key(|(of, ended)| (ended.len(), **of)) {
             let missing: Vec<usize> = (1..=of).filter(|i| !ended.contains(i)).collect();
             let have = match missing.len() {

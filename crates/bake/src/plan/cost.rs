@@ -213,8 +213,8 @@ fn of_albedos(spec: &AlbedoSpec) -> [f64; 2] {
             let views = if is_uneven { libm::log10(spec.tolerance / 1e-6) } else { 0.0 };
             [300.0 * tails, azimuths + views.clamp(0.0, 1.0)]
         }
-        // A table of σ = 0.3 and 0.1 (0.2 at γ = 3) tilted by 13° took 17 s at γ = ∞, 118 s at γ =
-        // 3 and 31 s at γ = 1.52, where fewer doublings were needed.
+        // A table of σ = 0.3 and 0.1 (0.2 at γ = 3) tilted by 13° took 17 s at γ = ∞,
+        // 118 s at γ = 3 and 31 s at γ = 1.52, where fewer doublings were needed.
         LobeForm::Ellipsoid => [1700.0 * (1.0 + 8.0 * s.min(0.5)), 1.5],
         LobeForm::Distribution => {
             let has_long_tails = lobe.distribution.as_ref().is_some_and(has_long_tails);

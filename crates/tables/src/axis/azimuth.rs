@@ -179,7 +179,7 @@ impl PreparedAzimuth {
         };
         let whole: f64 = (0..points).map(|i| at(i).1).sum();
         let spread = (0..points).map(at).map(move |(t, share)| (self.direction(t), share / whole));
-        // A single node stands for every azimuth.
+        // A single node has the values of every azimuth.
         (points == 0).then(|| (self.direction(0.0), 1.0)).into_iter().chain(spread)
     }
 }

@@ -68,8 +68,7 @@ impl CriticalBlend {
 
     /// The parameters of baked tables of one index and a heavy tail. Of those that
     /// `cargo run --profile dist -p microfacet-study -- dielectric_views` compares, none has
-    /// smaller
-    /// errors.
+    /// smaller errors.
     pub const UPRIGHT: Self = Self { kink: 0.0, sharp: 0.1, between: 0.9, ..Self::BAKED };
 
     /// The number of parts: two or three.

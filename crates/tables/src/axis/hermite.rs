@@ -39,8 +39,7 @@ pub fn basis(w: f32x4) -> f32x4 {
     c0 + w * (c1 + w * (c2 + w * c3))
 }
 
-/// [`hermite`] of four pairs of nodes at four positions; the nodes are
-/// [value, slope, value, slope].
+/// [`hermite`] of four pairs of nodes, [value, slope, value, slope], at four positions.
 #[inline(always)]
 pub fn hermite_lanes([v0, s0, v1, s1]: [f32x4; 4], w: f32x4) -> f32x4 {
     // `basis` without its zero terms, which changes no bit.

@@ -21,8 +21,8 @@ impl InverseShape {
         gamma_of_s(s)
     }
 
-    /// `count` nodes from `low` to `high` that crowd towards s = 2, even in
-    /// `linear`·s − ln(1 − s/2).
+    /// `count` nodes from `low` to `high` that crowd towards s = 2, even in `linear`·s − ln(1 −
+    /// s/2).
     ///
     /// The projected area diverges there as 1/(2 − s), and what depends on it changes with the
     /// logarithm of 2 − s.

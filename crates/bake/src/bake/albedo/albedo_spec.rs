@@ -43,8 +43,8 @@ pub struct AlbedoSpec {
 const CLOSE_FROM: Level = Level(24);
 
 /// γ below which a dielectric has enough upright facets for a kink of its transmission: up to 1.9
-/// an axis in three parts errs less than one in two, at 3 it errs more (`cargo run --profile dist
-/// -p microfacet-study -- dielectric_views`).
+/// an axis in three parts errs less than one in two, at 3 it errs more
+/// (`cargo run --profile dist -p microfacet-study -- dielectric_views`).
 const HEAVY: f64 = 2.0;
 
 impl AlbedoSpec {

@@ -194,7 +194,7 @@ impl Entry<'_> {
     }
 }
 
-/// Whether angles in radians are larger than needed: an ellipsoid looks the same half a turn on.
+/// Whether angles in radians are larger than needed: an ellipsoid is the same after half a turn.
 fn look_like_degrees([x, y, z]: [f64; 3]) -> bool {
     let above = |angle: f64, most: f64| angle.is_finite() && angle.abs() > most + 1e-3;
     above(x, FRAC_PI_2) || above(y, FRAC_PI_2) || above(z, TAU)

@@ -28,7 +28,7 @@ fn both(text: &str) -> [String; 2] {
 const A: &str = "[[material]]\nname = \"a\"\nsigma = 0.3\ngamma = 3\n";
 const B: &str = "  [[material]] # b\nname = \"b\"\nsigma = [0.3,\n\n 0.1]\ngamma = 3\n";
 
-/// Texts that may stand between materials: some belong there, and some do not.
+/// Texts between materials, some of them valid there.
 const ODD: [&str; 32] = [
     "",
     "\u{feff}",
