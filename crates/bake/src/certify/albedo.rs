@@ -169,7 +169,6 @@ impl<'a> Reader<'a> {
         Ok(Self { spec, table, own })
     }
 
-    /// The errors of all quantities.
     fn errors(
         &self,
         Reference { site, v, exact, .. }: &Reference,

@@ -46,7 +46,6 @@ pub(super) struct Along {
 }
 
 impl Along {
-    /// No axis.
     pub(super) fn none() -> Self {
         Self { cells: 0.0, names: vec![0.0] }
     }
@@ -141,7 +140,6 @@ pub(super) fn places([a, b]: [&Along; 2], points: usize) -> Vec<[f64; 2]> {
     named.iter().copied().chain(sequence).collect()
 }
 
-/// An error, and its point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
     pub(super) error: f64,
@@ -159,14 +157,11 @@ impl Seen {
     }
 }
 
-/// The result of a search for the largest error.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found {
-    /// The largest error.
     pub(super) worst: Seen,
     /// Root mean square error, without the climbs.
     pub(super) rms: f64,
-    /// Number of points measured.
     pub(super) points: usize,
 }
 

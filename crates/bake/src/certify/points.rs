@@ -314,7 +314,6 @@ impl<'a> Crease<'a> {
     }
 }
 
-/// Whether E has the kink of a tilted lobe.
 pub(super) fn has_crease(spec: &AlbedoSpec) -> bool {
     Crease::of(spec).is_some()
 }

@@ -74,8 +74,8 @@ fn scales(precision: Precision, channels: usize) -> usize {
     if precision == Precision::U16 { 26 * channels } else { 0 }
 }
 
-/// The descriptions that a file has already: it describes an axis once, and tables of single
-/// materials of one layout together.
+/// Counts bytes of descriptions, given those that a file has already: it describes an axis once,
+/// and tables of single materials of one layout together.
 ///
 /// The constants in bytes are counted in sets of draft quality of all kinds of tables, as averages
 /// over the digits of their figures: kind, columns, certificate, shape and offsets.
@@ -89,13 +89,11 @@ impl Known {
         new.map(|json| escaped(&json) + 1).sum()
     }
 
-    /// Bytes that describe a table of visible normals.
     pub(crate) fn normals(&mut self, spec: &TableSpec) -> usize {
         let scales = scales(spec.precision, Kind::VALUE_AND_SLOPE.len());
         self.axes(&Subject::shapes(spec.covers), &axes(spec)) + 2 * spec.name.len() + 400 + scales
     }
 
-    /// Bytes that describe the four tables of a distribution outside the family.
     pub(crate) fn radial(&mut self, label: &str, level: Level, precision: Precision) -> usize {
         // A name is as long as its kind and label. π stands for the scale of an axis, which has as
         // many digits.
@@ -107,7 +105,6 @@ impl Known {
         radial_axes(level, std::f64::consts::PI, f64::INFINITY).iter().map(header).sum()
     }
 
-    /// Bytes that describe albedo tables.
     pub(crate) fn albedo(&mut self, spec: &AlbedoSpec) -> usize {
         let (channels, is_single) = (spec.channels(), spec.nodes_of_materials() == 1);
         let lengths: Vec<usize> = spec.axes.iter().map(Axis::len).collect();

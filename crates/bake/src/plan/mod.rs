@@ -24,7 +24,6 @@ use crate::scene::{Format, Material, Scene};
 use crate::table_spec::{GAMMA_MIN, Quality};
 use microfacet_tables::SIGMA_MAX;
 
-/// γ of GGX.
 const GGX: f64 = 2.0;
 
 /// Options of a plan: what the renderer has at run time already, and which albedos to bake.
@@ -275,7 +274,6 @@ fn is_listed(material: &Material) -> bool {
     material.used && (!is_rough(material) || not_covered(material).is_none())
 }
 
-/// Whether tables may be baked for the material.
 fn is_tabulated(material: &Material) -> bool {
     is_listed(material) && is_rough(material)
 }
@@ -356,7 +354,6 @@ impl NotCovered {
         }
     }
 
-    /// The name of the material, before the reason.
     fn named(&self) -> String {
         self.material().map_or(String::new(), |material| format!("material \"{material}\": "))
     }

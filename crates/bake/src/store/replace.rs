@@ -64,7 +64,6 @@ pub(super) fn check_writable(path: &Path) -> io::Result<()> {
     Destination::of(path).map(|_| ())
 }
 
-/// The folder that a path is in.
 fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }

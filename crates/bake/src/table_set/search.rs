@@ -62,7 +62,6 @@ enum Among {
     All,
 }
 
-/// The measurements of a grade.
 struct Measured {
     tables: Vec<Table>,
     error: f64,

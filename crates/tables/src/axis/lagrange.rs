@@ -37,7 +37,6 @@ pub fn nodes_read(nodes: &[f64], from: f64, to: f64, window: usize) -> &[f64] {
     &nodes[window_at(nodes, from, window)..window_at(nodes, to, window) + window]
 }
 
-/// Whether nodes are spread evenly between the first and the last.
 pub(super) fn is_even(nodes: &[f64]) -> bool {
     let [first, .., last] = nodes else { return true };
     let step = (last - first) / (nodes.len() - 1) as f64;

@@ -69,7 +69,6 @@ impl Codec {
         }
     }
 
-    /// The codec that a description names.
     pub(super) fn described(
         precision: Precision,
         scale: &[f32],
@@ -87,7 +86,6 @@ impl Codec {
         }
     }
 
-    /// The scale and offset of a description, for fixed point.
     pub(super) fn scale_offset(&self) -> Option<(Vec<f32>, Vec<f32>)> {
         match self {
             Self::U16 { scale, offset } => Some((scale.clone(), offset.clone())),

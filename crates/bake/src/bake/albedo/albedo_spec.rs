@@ -18,7 +18,6 @@ use crate::table_spec::{GAMMA_MIN, Level};
 
 /// Smallest σ node; smoother surfaces count as mirrors.
 const SIGMA_MIN: f64 = LogRoughness::BAKED.first;
-/// The interpolation along every axis.
 const INTERPOLATION: Interpolation = Interpolation::Lagrange6;
 
 /// Albedo tables to bake: one for each form of masking, and with the moments of the family also a

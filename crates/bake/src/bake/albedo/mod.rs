@@ -257,7 +257,6 @@ fn node(
     Ok(Node { values, clamp })
 }
 
-/// The tables of one form of masking.
 fn tables(spec: &AlbedoSpec, nodes: &[Node], masking: Masking) -> Result<Vec<Table>, AlbedoError> {
     let channels = spec.reflectance.channels().len();
     let values = |node: &Node| {

@@ -26,7 +26,6 @@ pub(super) enum TableGroup {
     Normals(RequiredShapes, Parts),
     /// A distribution outside the family, and a material that has it.
     Distribution(Distribution, MaterialEntry),
-    /// A required albedo.
     Albedo(RequiredAlbedo),
 }
 
