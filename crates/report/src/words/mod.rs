@@ -1,5 +1,5 @@
-//! Sets, tables and materials in words: one home for what commands print and what a page says. What
-//! a file says is repeated as it is, and escaped where it is shown.
+//! Sets, tables and materials in words, for commands and pages. Texts from files are repeated
+//! unchanged, and escaped where they are shown.
 
 pub mod certificate;
 pub mod command;
