@@ -171,7 +171,8 @@ fn everything(settings: &Settings, files: bool) -> Result<Results, Failure> {
     Ok((files, text.join("\n"), json))
 }
 
-/// Says on a terminal what is measured now: a bar would need a thread beside the one that is timed.
+/// Says on a terminal what is measured: a progress bar would need a second thread next to the one
+/// that is timed.
 fn stage(what: &str) {
     if io::stderr().is_terminal() {
         eprintln!("{what}");

@@ -23,7 +23,6 @@ use crate::settings::Settings;
 
 pub(crate) use approximation::Approximation;
 
-/// All that is measured.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Paper {
     times: Vec<times::Timing>,
@@ -45,7 +44,6 @@ impl Paper {
         Self { times, approximation, integrated, compared }
     }
 
-    /// Every file by its name.
     pub(crate) fn files(&self) -> Result<Vec<(&'static str, Vec<u8>)>, Failure> {
         let measures = MEASURES.map(|measure| measure.column);
         let columns = [&["gamma", "sigma"][..], &measures].concat();
