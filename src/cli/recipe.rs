@@ -48,8 +48,8 @@ pub(super) fn run(args: Args) -> Result<()> {
     summarize(&format!("{}\n", path.display()))
 }
 
-/// Refuses a file that exists already, since what it holds may be work that is nowhere else, and
-/// one that cannot be written.
+/// Refuses a file that exists already, since its contents may exist nowhere else, and one that
+/// cannot be written.
 pub(super) fn check_new(path: &Path) -> Result<()> {
     ensure!(
         path.symlink_metadata().is_err(),

@@ -151,7 +151,7 @@ fn largest_errors(tables: &[Table]) -> String {
     let mut rows = Vec::new();
     for of in ["G1", "CDF of visible normals", "D/D(0)", "albedo"] {
         let tables = tables.iter().filter(|table| quantity(table.kind) == of);
-        // A NaN, and an error that was not measured, are the worst.
+        // NaN, and an error that was not measured, count as the largest.
         let largest =
             |table: &Table| table.certificate.largest().map_or(f64::NAN, |(_, largest)| largest);
         if let Some(table) = tables.max_by(|a, b| largest(a).total_cmp(&largest(b))) {
