@@ -272,7 +272,7 @@ fn write_on(bytes: &[u8]) -> Result<bool> {
     let mut out = io::stdout();
     // Flushed, since an error that waits for the end of the process is lost.
     let mut all = || out.write_all(bytes).and_then(|()| out.flush());
-    // A file or pipe is written without the lock of the bar: its reader may keep the writer waiting.
+    // A file or pipe is written without the lock of the bar, since its reader may be slow.
     match if io::stdout().is_terminal() { progress::above(all) } else { all() } {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(false),
         result => result.context("standard output").map(|()| true),

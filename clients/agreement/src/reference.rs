@@ -52,7 +52,6 @@ pub(crate) fn compare(
                     None if difference <= SMALLEST => 0.0,
                     None => difference / want / density(),
                 };
-                // NaN is worse than any number.
                 let share = if share.is_nan() { f64::INFINITY } else { share };
                 cells += 1;
                 if share > worst.0 {
@@ -70,8 +69,8 @@ pub(crate) fn compare(
     share <= 1.0 && cells > 0 && skipped == 0
 }
 
-/// Columns with what answers say of them, and what they may differ by; densities have no limit of
-/// their own.
+/// Columns with the values of an answer and their limits; `None` for densities, whose limit is
+/// relative.
 fn columns(
     answer: &Answer,
     masking: usize,

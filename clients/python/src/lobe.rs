@@ -15,7 +15,7 @@ use crate::arrays::{Any, Cost};
 use crate::distribution::{Kind, PyDistribution, View, azimuth_matters};
 use crate::words::{self, refused, unbound};
 
-/// The set compiled in.
+/// The embedded set, in one copy.
 pub(crate) fn embedded() -> Arc<Tables> {
     static EMBEDDED: LazyLock<Arc<Tables>> = LazyLock::new(|| Arc::new(Tables::embedded()));
     Arc::clone(&EMBEDDED)
@@ -49,7 +49,7 @@ impl PyLobe {
         self.tables.albedo_of(&*self.lobe, masking, stand_in).map_err(unbound)
     }
 
-    /// What is known of an albedo for views; cosines where they suffice.
+    /// A function of the albedo at each view; cosines are refused where the azimuth matters.
     fn of_views<'py, const M: usize>(
         &self,
         v: Option<&Any<'py>>,
