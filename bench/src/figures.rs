@@ -1,4 +1,4 @@
-//! The figures that say whether tables are worth having, as ratios of times within one run.
+//! The figures that decide whether tables are worthwhile, as ratios of times within one run.
 
 use std::hint::black_box;
 use std::time::Instant;

@@ -165,7 +165,7 @@ impl Args {
         }
     }
 
-    /// Sets what is said if the bake is interrupted: what it leaves.
+    /// Sets the message of an interrupt: what the bake leaves.
     fn say_what_is_left(&self, folder: &Path, out: &OutputFolder, cache: &Cache) {
         let (folder, written, kept) = (folder.display().to_string(), out.written(), cache.kept());
         interrupt::leaves(move || {

@@ -79,7 +79,7 @@ pub(super) fn watch() {
     }
 }
 
-/// The signals that are ignored, a bit each, where the kernel says so.
+/// The signals that are ignored, a bit each, where the kernel lists them; 0 elsewhere.
 #[cfg(unix)]
 fn ignored() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

@@ -195,7 +195,7 @@ fn is_quiet() -> bool {
     QUIET.load(Relaxed)
 }
 
-/// Writes a line to standard error: a warning or a note, as `kind` says.
+/// Writes a line to standard error, of `kind` "warning" or "note".
 fn report(kind: &str, message: impl Display) {
     if kind != "note" || !is_quiet() {
         say(kind, &escape::line(&message.to_string()));

@@ -20,7 +20,7 @@ pub(super) struct Args {
 
 const STARTER: &str = include_str!("../../tables/recipes/starter.toml");
 
-/// What `--help` says of the keys.
+/// The keys of a material in `--help`.
 const KEYS: &str = "\
 Keys of a material (docs/recipe.md has all their forms):
   name          text of your choice, different for each material

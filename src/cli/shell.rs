@@ -68,7 +68,7 @@ fn page(command: Command) -> Result<Vec<u8>> {
     Ok(text)
 }
 
-/// The name by which a page is found, in which hyphens take the place of spaces.
+/// The name of a manual page, with hyphens for spaces.
 fn page_name(command: &Command) -> String {
     command.get_bin_name().unwrap_or(NAME).replace(' ', "-")
 }

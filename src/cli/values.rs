@@ -60,7 +60,7 @@ pub(super) fn seed(text: &str) -> Result<u64, String> {
     count(0..=u64::MAX)(text)
 }
 
-/// Parses a number that is allowed; `must` says which numbers are.
+/// Parses a number that is allowed; `must` describes the allowed numbers in errors.
 pub(super) fn number(
     is_allowed: fn(&f64) -> bool,
     must: &'static str,
@@ -168,7 +168,7 @@ impl Unit {
         Ok(self.angles().to_radians(x))
     }
 
-    /// What to say of an azimuth that may be in degrees: one of more than a turn.
+    /// A warning for an azimuth of more than a turn, which may be in degrees.
     pub(super) fn doubt(self, phi: f64) -> Option<String> {
         let turns = phi.abs() / TAU;
         (!self.degrees && phi.abs() > TAU + 1e-3).then(|| {

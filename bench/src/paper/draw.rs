@@ -85,7 +85,7 @@ impl Paper {
     fn by_measure(&self) -> Panel {
         let curves = MEASURES.iter().enumerate().map(|(i, measure)| {
             let curve = self.error_curve(Key::Nth(i), measure.formula.into(), i, SIGMA);
-            // The last hides the one before it, as G1 is close to 1 where the error is largest.
+            // The last two coincide, since G1 is close to 1 where the error is largest.
             curve.dashed(if i + 1 == MEASURES.len() { Dash::Dashed } else { Dash::Solid })
         });
         let title = format!("Rational approximation over the hemisphere, σ = {SIGMA}");

@@ -32,7 +32,7 @@ pub(crate) struct Paper {
 }
 
 impl Paper {
-    /// Measures everything; `stage` is told what comes next.
+    /// Measures everything; `stage` is called with the name of each stage.
     pub(crate) fn measure(set: &Tables, settings: &Settings, stage: impl Fn(&str)) -> Self {
         stage("figure 4: times of the forms of masking, alone and in a renderer");
         let times = times::times(set, settings);

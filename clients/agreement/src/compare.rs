@@ -43,8 +43,9 @@ pub enum Rough {
     /// By their coordinates, with this limit: for the same operations in the same order.
     Coordinates(f64),
     /// With the limits of other normals, by their coordinates or by those of the normals of σ = 1
-    /// that they are stretched from, whichever are closer: a flat normal is turned much by the last
-    /// digits of its slope, and the slope of a steep one changes much by those of its coordinates.
+    /// that they are stretched from, where they are closer: the last digits of its slope turn a
+    /// flat normal much, and the last digits of its coordinates change the slope of a steep one
+    /// much.
     Stretched,
 }
 

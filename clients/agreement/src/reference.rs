@@ -8,8 +8,8 @@ use crate::{Foreign, Limits};
 
 /// Compares every row whose shape is exported; returns whether all agree.
 ///
-/// GGX is exported in closed form, so its rows are held against the exact columns, and its normals,
-/// which are drawn in another way than from tables, are not compared.
+/// GGX is exported in closed form: its rows are compared with the exact columns, and its normals,
+/// which are not drawn from tables, not at all.
 pub(crate) fn compare(
     foreign: &mut impl Foreign,
     limits: &Limits,

@@ -64,7 +64,7 @@ impl PyLobe {
             LobeKey::Upright(lobe) => !lobe.roughness.is_isotropic(),
             key => matches!(key, LobeKey::Tilted { .. }),
         };
-        // The round lobe that stands in has no azimuth, a table of the lobe itself has.
+        // The round lobe that stands in does not depend on the azimuth, a table of the lobe does.
         if turned && matches!(views, View::Cosines(_)) && self.albedo_of(masking, false).is_ok() {
             return Err(azimuth_matters());
         }

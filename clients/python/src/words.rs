@@ -45,7 +45,7 @@ pub(crate) fn unread(why: StoreError) -> PyErr {
     }
 }
 
-/// A number that stands for all N, or N of them; `meaning` says what they are.
+/// N numbers, or one number for all N; `meaning` describes them in errors.
 pub(crate) fn numbers<const N: usize>(
     name: &'static str,
     value: &Any,

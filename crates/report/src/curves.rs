@@ -17,8 +17,7 @@ use crate::plot::{Axis, Curve, Dash, Key, Panel};
 use crate::words::material::material;
 use crate::words::{number, range};
 
-/// Intervals of θ along a curve, denser at the normal, where G1 of heavy tails falls, and at the
-/// horizon.
+/// Intervals of θ along a curve, denser at the normal, where heavy tails fall, and at the horizon.
 const VIEWS: u32 = 45;
 /// θ in degrees of the view whose values captions state.
 const STATED: f64 = 80.0;
@@ -27,8 +26,7 @@ struct Line {
     name: String,
     key: Key,
     dash: Dash,
-    /// Functions of the view: G1; and E of the round lobe of √(σx σy), `None` where no table covers
-    /// it.
+    /// G1 of a view, and E of the round lobe of √(σx σy) if a table covers it.
     quantities: [Option<Quantity>; 2],
 }
 

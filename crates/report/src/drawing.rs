@@ -5,8 +5,7 @@ use maud::{Markup, PreEscaped, html};
 use crate::plot::{Figure, Panel};
 use crate::words;
 
-/// Width and height of a plot in pixels: two fit side by side on paper, and the text is legible on
-/// a phone.
+/// Size of a plot in pixels: two fit side by side on paper, and the text is legible on a phone.
 pub(super) const SIZE: [f64; 2] = [380.0, 290.0];
 
 /// A panel as an element of the page; `label` describes it for screen readers.
@@ -48,8 +47,7 @@ pub(super) fn unbroken(text: &str) -> String {
     text.replace(" = ", "\u{a0}=\u{a0}")
 }
 
-/// A text written for terminals, with the names of Greek letters and of infinity replaced by the
-/// symbols.
+/// A text for terminals, with the names of Greek letters and of infinity replaced by symbols.
 pub(super) fn symbols(text: &str) -> String {
     let is_part = |c: char| c.is_alphanumeric();
     let mut out = String::with_capacity(text.len());

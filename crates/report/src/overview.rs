@@ -32,7 +32,6 @@ pub(super) fn section(source: &Source) -> Markup {
     }
 }
 
-/// The ranges of a set without materials by name.
 fn ranges(set: &Tables) -> Markup {
     html! {
         p { "No materials by name; the set serves any in these ranges." }

@@ -94,15 +94,15 @@ impl Panel {
         Self { title: title.into(), x, y, curves, marks: Vec::new() }
     }
 
-    /// A point as fractions of the panel: (0, 0) is the left lower corner, (1, 1) the right upper
-    /// one.
+    /// A point as fractions of the panel, (0, 0) at the left lower corner, (1, 1) at the right
+    /// upper.
     fn place(&self, (x, y): (f64, f64)) -> [f64; 2] {
         [self.x.fraction(x), self.y.fraction(y)]
     }
 }
 
-/// Panels in rows. The legend of a row's curves stands beneath it, or beneath the last of the rows
-/// that share it.
+/// Panels in rows. The legend of a row's curves is beneath it, or beneath the last of the rows that
+/// share it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
     /// Panels, row by row.

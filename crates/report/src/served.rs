@@ -45,8 +45,7 @@ pub(super) fn served(set: &Tables) -> Vec<Served<'_>> {
     set.provenance().materials.iter().map(one).collect()
 }
 
-/// The verdicts on albedos of a plan of the recipe that the set keeps, by material; empty if it
-/// cannot be planned.
+/// The verdicts on albedos in a plan of the set's recipe, by material; empty without a plan.
 fn wishes(recipe: &str) -> BTreeMap<String, AlbedoVerdict> {
     let Ok(scene) = Scene::from_recipe_str(recipe) else { return BTreeMap::new() };
     let Ok(plan) = Plan::new(&scene, Options::default()) else { return BTreeMap::new() };
@@ -164,8 +163,7 @@ fn tables_of<'a>(
     set.tables().iter().filter(reads)
 }
 
-/// Whether a table of reflectance `of` serves one of the wanted; moments, the tables of F = 1,
-/// always do.
+/// Whether a table of reflectance `of` serves one of the wanted; that of F = 1, the moments, does.
 fn reads_of(of: &Reflectance, wanted: &[Reflectance]) -> bool {
     *of == Reflectance::Mirror || wanted.iter().any(|wanted| of.contains(wanted))
 }

@@ -1,5 +1,4 @@
-//! What of a set is shown: the shapes that the sphere can have, and the lobes with curves and
-//! pictures.
+//! What of a set is shown: shapes of the sphere, and lobes with curves and pictures.
 
 use microfacet_core::shape::gamma_of_s;
 use microfacet_sampler::{Masking, Tables};
@@ -84,7 +83,7 @@ impl Subjects {
 }
 
 impl Shown {
-    /// σ of the round lobe that it is, or that stands in for it.
+    /// σ of a round lobe, or of the round lobe that stands in for another.
     pub(super) fn round_sigma(&self) -> f64 {
         self.entry.as_ref().map_or(self.sigma[0], |entry| entry.lobe.round_sigma())
     }

@@ -1,4 +1,4 @@
-//! What `bake` says when it is done.
+//! The summary that `bake` prints.
 
 use std::path::Path;
 
@@ -25,9 +25,8 @@ pub(super) struct Summary<'a> {
     pub(super) written: &'a [Written],
     /// The folder, as it was given.
     pub(super) out: &'a Path,
-    /// An image was asked for.
     pub(super) exr: bool,
-    /// Images of single tables were asked for, which are no set.
+    /// Images of single tables, which are no set.
     pub(super) split: bool,
     pub(super) seconds: f64,
 }

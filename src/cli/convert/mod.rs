@@ -243,7 +243,7 @@ mod tests {
                 "beckmann:1.2 --to blinn-phong --by formula",
                 ["blinn-phong:1.388889", "none: Walter"],
             ),
-            // A formula beyond its fit says so.
+            // A formula beyond the range that it was fitted to.
             (
                 "beckmann:0.6 --to gauss --by formula",
                 ["gauss:", "eq. 13 (fitted to m = 0.004473 to 0.4473)"],

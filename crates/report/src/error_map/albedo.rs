@@ -11,8 +11,7 @@ use microfacet_tables::{Axis, Kind, Mapping, Provenance, Table};
 
 use super::{Place, Quantity, Span, Unmeasured};
 
-/// Tolerance of a node as a share of the table's largest error, and its limits: those of high
-/// quality and of a draft.
+/// Tolerance of a node as a share of the table's largest error, and its limits.
 const FINE: f64 = 1.0 / 300.0;
 const TOLERANCES: [f64; 2] = [1e-7, 1e-5];
 

@@ -29,8 +29,8 @@ const OVER: [usize; 2] = [41, 6];
 /// Seconds of one thread that a map may take.
 const LIMIT: f64 = 1.5;
 
-/// Pairs of quantities for y and x of the first map, the most informative first. A table gets the
-/// first pair that it has.
+/// Quantities for y and x of the first map, the most informative pair first: a table's first is
+/// taken.
 const FIRST: [(Quantity, Quantity); 9] = [
     (Quantity::Sigma, Quantity::Cosine),
     (Quantity::Azimuth, Quantity::Cosine),
@@ -49,8 +49,7 @@ const SECOND: [(Quantity, Quantity); 3] = [
     (Quantity::Number, Quantity::Cotangent),
 ];
 
-/// The axes of a table's maps: the most informative map, and a second one if the table has the
-/// axes. Empty if no axis has errors that change along it.
+/// The axes of a table's maps, at most two; none if errors change along no axis.
 pub fn sides(table: &Table) -> Vec<Sides> {
     let of = |quantity: Quantity| {
         table.axes.iter().position(|axis| moves(axis) && Quantity::of(axis) == quantity)
@@ -87,8 +86,7 @@ pub(super) struct Layout {
     pub(super) pixels: [usize; 2],
     each: [usize; 2],
     counts: [usize; AXES],
-    /// Axes that are not shown: those of `fixed` stay at one value, over those of `over` the
-    /// largest error is taken.
+    /// Axes that are not shown: they stay at one value, or the largest error over them is taken.
     pub(super) fixed: Vec<usize>,
     pub(super) over: Vec<usize>,
 }
@@ -136,8 +134,8 @@ impl Layout {
         self.counts[1..].iter().product()
     }
 
-    /// All points with the indices of their pixels, row by row from the low end of y; the last axis
-    /// varies fastest.
+    /// All points with the numbers of their pixels, row by row from low y; the last axis is
+    /// fastest.
     pub(super) fn places(&self, table: &Table, spans: &[Span]) -> Vec<(Place, usize)> {
         let mut all: Vec<(Place, usize)> = vec![([0.0; AXES], 0)];
         for axis in 0..AXES {

@@ -22,8 +22,7 @@ use layout::Layout;
 pub use layout::{Sides, seconds, sides};
 pub use span::{Quantity, Span};
 
-/// A point of a table, as shares of its axes; components after those of the table's axes are
-/// unused.
+/// A point of a table, as shares of its axes; the components beyond them are unused.
 type Place = [f64; AXES];
 const AXES: usize = 4;
 
@@ -37,7 +36,7 @@ pub struct ErrorMap {
     pub columns: usize,
     /// The largest error in each pixel, row by row from the low end of y; NaN where one is NaN.
     pub errors: Vec<f64>,
-    /// Number of places measured.
+    /// Number of points measured.
     pub points: usize,
     /// Axes that are not shown and stay at a value.
     pub fixed: Vec<(Quantity, f64)>,

@@ -47,8 +47,7 @@ impl Quantity {
         matches!(self, Self::Gamma | Self::Sigma | Self::Eta | Self::Azimuth)
     }
 
-    /// The value at the largest error of a table's certificate; `None` if the certificate does not
-    /// state it.
+    /// The value at the largest error of a table's certificate, if it is stated.
     pub fn worst(self, table: &Table) -> Option<f64> {
         let figure = |of| table.certificate.at.get(&of).copied();
         match self {

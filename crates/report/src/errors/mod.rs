@@ -33,8 +33,7 @@ struct Chosen<'a> {
 }
 
 impl<'a> Chosen<'a> {
-    /// At most [`MOST`] maps: first maps of tables before second ones, larger certified errors
-    /// before smaller ones.
+    /// First maps of tables come before second ones, larger certified errors before smaller ones.
     fn of(set: &'a Tables) -> Self {
         let tables = set.tables();
         let mut all: Vec<(usize, usize, Sides)> = Vec::new();

@@ -3,8 +3,7 @@
 use super::words::number;
 use crate::error_map::{Quantity, Span};
 
-/// Numbers nearer to an end than this share of the axis are left out: they could be taken for the
-/// number of the end.
+/// Numbers this near to an end, as a share of the axis, are left out: they could be taken for it.
 const AT_END: f64 = 1e-3;
 
 /// Numbers with their shares of the axis, the most important first: both ends, then round numbers.

@@ -1,4 +1,4 @@
-//! Axes: what a coordinate means, its range and scale, and where its ticks stand.
+//! Axes: the meaning of a coordinate, its range, scale and ticks.
 
 /// One axis of a panel: quantity and unit, range, and whether its scale is logarithmic.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,9 +72,8 @@ impl Axis {
         if self.log { libm::exp10(x) } else { x }
     }
 
-    /// The fraction of the axis's length at a value: 0 at the low end, 1 at the high one, outside
-    /// [0, 1] for values beyond the ends. On a logarithmic axis it is −∞ for 0 and NaN for negative
-    /// values.
+    /// The fraction of the axis at a value: 0 at the low end, 1 at the high one, outside [0, 1]
+    /// beyond. On a logarithmic axis it is −∞ for 0 and NaN for negative values.
     pub fn fraction(&self, value: f64) -> f64 {
         let [low, high] = self.ends();
         let x = if self.log { libm::log10(value) } else { value };
@@ -94,8 +93,7 @@ impl Axis {
         if self.log {
             let mut ticks = self.log_ticks(room);
             ticks.retain(|tick| self.is_fine || tick.label.is_some());
-            // A range of less than a decade may hold only one of the numbers 1, 2 and 5, which
-            // gives no scale.
+            // Less than a decade may hold only one of the numbers 1, 2 and 5, which is no scale.
             if ticks.iter().filter(|tick| tick.label.is_some()).count() > 1 {
                 return ticks;
             }

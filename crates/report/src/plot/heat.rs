@@ -25,7 +25,7 @@ pub struct HeatMap {
     pub size: [f64; 2],
 }
 
-/// Shades of maps and their bars: so few take fewer bytes, and can be told apart.
+/// Shades of maps and their bars: few take fewer bytes, and can be told apart.
 const SHADES: usize = 24;
 /// The ring: its radius, and widths and colours of its lines, the same on light and dark pages.
 const RADIUS: f64 = 7.0;
@@ -75,7 +75,7 @@ pub fn bar(scale: &Axis, width: f64) -> Drawing {
     drawing
 }
 
-/// Draws the bar of a scale in so many shades, with its numbers and its label beneath.
+/// Draws the bar of a scale in this number of shades, with its numbers and its label beneath.
 pub(super) fn draw_bar(
     drawing: &mut Drawing,
     scale: &Axis,

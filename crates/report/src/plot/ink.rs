@@ -119,8 +119,7 @@ pub(super) fn on_dark(color: Color) -> Color {
     color.map(|c| (f64::from(c) + (255.0 - f64::from(c)) * part).round() as u8)
 }
 
-/// The colour of a ramp, with its first stop at 0 and its last at 1; beyond them, that of the
-/// nearer end.
+/// The colour of a ramp from its first stop at 0 to its last at 1; beyond, of the nearer end.
 fn between(stops: &[Color; 5], place: f64) -> Color {
     let at = place.clamp(0.0, 1.0) * 4.0;
     let cell = (at as usize).min(3);

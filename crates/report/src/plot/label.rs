@@ -103,8 +103,7 @@ fn candidates([x, y]: At, width: f64) -> impl Iterator<Item = Candidate> {
     (-24..=24).flat_map(sides)
 }
 
-/// The squares of the line that leads to a name, without those on its own point; none for a name
-/// next to its point.
+/// The squares of a leading line without those on its own point; none for a name next to it.
 fn lead(point: At, to: &Candidate) -> impl Iterator<Item = Area> {
     let parts = (!to.is_beside).then(|| squares(point, to.start).skip(3));
     parts.into_iter().flatten()

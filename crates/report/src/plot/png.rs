@@ -47,8 +47,7 @@ fn encode(rgb: &[u8], [width, height]: [u32; 2], filter: FilterType) -> ImageRes
     Ok(file.into_inner())
 }
 
-/// An image of whole lines, without filters: most images have few colours, from which filters make
-/// more values.
+/// An image of whole lines. Most have few colours, from which filters would make more values.
 pub(super) fn of_pixels(pixels: &[Color], columns: usize) -> Vec<u8> {
     let size = [columns, pixels.len() / columns].map(|edge| edge as u32);
     encode(pixels.as_flattened(), size, FilterType::NoFilter).expect("whole lines, in memory")

@@ -29,7 +29,7 @@ pub struct Tile {
 /// A sheet of pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
-    /// Columns that stand together, from the left: how many, and the heading above all of them.
+    /// Groups of columns from the left: the number of columns, and the heading above them.
     pub groups: Vec<(usize, String)>,
     /// Headings of the columns.
     pub columns: Vec<String>,

@@ -28,8 +28,8 @@ impl Drawing {
     /// fonts, with colours for light and dark pages; `label` is for screen readers.
     ///
     /// Black is `--ink` and the grid `--line`, custom properties of the page; other colours are
-    /// `light-dark()`. A browser that lacks these takes the colours of the attributes, which are
-    /// those on white.
+    /// `light-dark()`. A browser without these takes the attributes, whose colours are those on
+    /// white.
     pub fn inline_svg(&self, label: &str) -> String {
         let [width, height] = self.size;
         let label = escaped(label).replace('"', "&quot;");

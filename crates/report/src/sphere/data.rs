@@ -39,8 +39,7 @@ pub(super) struct Data {
 #[derive(Serialize)]
 struct Choice {
     name: String,
-    /// Real and imaginary part of the index of refraction; or Schlick's F0 in `eta`, with k below
-    /// 0.
+    /// The complex index of refraction eta + i k; or F0 in `eta`, with k below 0.
     eta: [f64; 3],
     k: [f64; 3],
     /// The average of the reflectance over the hemisphere.
@@ -55,8 +54,7 @@ pub(super) fn label(gamma: f64) -> String {
     }
 }
 
-/// The shape whose visible normals are drawn for a stop: its own, or the one with the next heavier
-/// tails.
+/// The shape that normals are drawn from for a stop: of the same or the next heavier tails.
 fn drawn(subjects: &Subjects, gamma: f64) -> f64 {
     let mut heavier = subjects.slices.iter().copied().filter(|slice| *slice <= gamma);
     heavier.next_back().unwrap_or(gamma)

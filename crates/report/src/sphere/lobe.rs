@@ -10,8 +10,7 @@ use microfacet_sampler::{Lobe, Masking, MaterialError, MicrofacetDistribution, T
 
 use super::scene::Look;
 
-/// The length of the longest arrow, equal to `REACH` of lobe.js, and the number of lights of a
-/// picture.
+/// The length of the longest arrow, as `REACH` of lobe.js, and the number of lights of a picture.
 const REACH: f64 = 150.0;
 const LIGHTS: usize = 361;
 const VIEWS: [u32; 3] = [15, 45, 75];

@@ -99,8 +99,7 @@ fn pictures(
     subjects.shown.iter().map(picture).collect()
 }
 
-/// The error of binding a metal: round lobes stand in for others, so that only a shape can be
-/// missing.
+/// Round lobes stand in for others, so that a metal fails to bind for a missing shape only.
 fn unbound(why: BindError) -> ReportError {
     match why {
         BindError::Material(why) => ReportError::Material(why),
@@ -184,8 +183,7 @@ fn slider_steps() -> usize {
     (100.0 * (SIGMA[1] / SIGMA[0]).log10()).round() as usize
 }
 
-/// A picture of each lobe, as a button that shows the lobe on the sphere; none for one lobe, which
-/// the sphere shows already.
+/// Pictures of lobes, as buttons that show a lobe on the sphere; none if there is one lobe.
 fn gallery(subjects: &Subjects, pictures: &[String]) -> Markup {
     html! {
         @if pictures.len() > 1 { div.gallery {

@@ -50,8 +50,7 @@ const FLOOR_ENDS: [f32; 2] = [1.5, 9.0];
 /// The tangent of the key light's radius, for its shadow.
 const PENUMBRA: f32 = 0.5;
 
-/// The position of the camera, the point that it looks at, and the tangent of half its angle of
-/// view.
+/// The position of the camera, the point that it looks at, and the tangent of half its field.
 const EYE: Vec3 = Vec3::new(0.0, 1.35, 6.2);
 const LOOKS_AT: Vec3 = Vec3::new(0.0, -0.1, 0.0);
 const TANGENT: f32 = 0.222;
@@ -69,8 +68,8 @@ fn smoothstep(from: f32, to: f32, x: f32) -> f32 {
 }
 
 impl Lamp {
-    /// The point on the lamp's plane in a direction, in halves of its edges, and the cosine; `None`
-    /// for a direction outside the lamp.
+    /// The point on the lamp in a direction, in halves of its edges, and the cosine; `None`
+    /// outside.
     fn place(&self, d: Vec3) -> Option<(Vec2, f32)> {
         let z = d.dot(self.towards);
         if !(z > 1e-3) {

@@ -9,7 +9,7 @@ pub mod verdict;
 
 use bytesize::ByteSize;
 
-/// A number to seven digits, which hides the rounding of coordinates: `0.3`, `1e-8`, `inf`.
+/// A number to seven digits, without the rounding of coordinates: `0.3`, `1e-8`, `inf`.
 pub fn number(x: f64) -> String {
     let rounded: f64 = format!("{x:.6e}").parse().unwrap_or(x);
     match rounded.abs() {

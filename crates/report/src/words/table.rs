@@ -127,7 +127,7 @@ pub fn axis(axis: &Axis) -> String {
     format!("{what}: {extent}; {nodes}, {}; {}", coordinate(&axis.mapping), between(axis))
 }
 
-/// The coordinate in which nodes stand, with its name and parameters in files.
+/// The coordinate in which nodes are placed, with its name and parameters in files.
 fn coordinate(mapping: &Mapping) -> String {
     let words = match mapping {
         Mapping::InverseShape => "in 1/(gamma - 1)",

@@ -35,8 +35,7 @@ impl At {
     }
 }
 
-/// A measure of distance: its name, the printed bound in %, and its value from the differences at
-/// all angles.
+/// A measure of distance: its name, the printed bound in %, and its value from all angles.
 type Measure = (&'static str, f64, fn(&[At]) -> f64);
 
 const BOUND_OF_D: f64 = 0.5;

@@ -39,8 +39,7 @@ fn panel(gamma: f64) -> Panel {
         // After the first error of 1 the values are rounding noise.
         if let Some(lost) = curve.points.iter().position(|&(_, error)| error >= 1.0) {
             curve.points.truncate(lost + 1);
-            // Moved above the panel, so that an error of exactly 1, from a Λ of 0, leaves the panel
-            // too.
+            // Above the panel, so that an error of exactly 1, from a Λ of 0, leaves it too.
             curve.points[lost].1 = 10.0;
         }
         // Dashed, since the series and the sums agree where neither loses digits.

@@ -10,8 +10,7 @@ use microfacet_model::classic::Isotropic;
 use crate::plot::figures::curve;
 use crate::plot::{Axis, Curve, Dash, Figure, Key, Panel};
 
-/// The distributions, with the letters of their parameters. Curves that cover each other differ in
-/// dashes.
+/// The distributions, with the letters of their parameters; curves that coincide differ in dashes.
 const DRAWN: [(DistributionKind, &str, Dash); 6] = [
     (DistributionKind::Beckmann, "m", Dash::Solid),
     (DistributionKind::BlinnPhong, "N", Dash::Dashed),
