@@ -76,7 +76,7 @@ pub(super) fn finite(text: &str) -> Result<f64, String> {
     number(|x| x.is_finite(), "a finite number")(text)
 }
 
-/// Parses a factor on γ that makes tests reject; a larger one would reject any table.
+/// Parses a factor on γ that makes tests reject; one outside [0.5, 2] would reject any table.
 pub(super) fn factor(text: &str) -> Result<f64, String> {
     number(|x| (0.5..=2.0).contains(x), "a number in [0.5, 2]; 1 leaves gamma as it is")(text)
 }

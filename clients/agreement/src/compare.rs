@@ -25,8 +25,7 @@ pub struct Limits {
     pub heavy: f64,
     /// Averages of albedos.
     pub average: f64,
-    /// Relative differences of densities: in general, and in addition for each unit of |ln(D σx
-    /// σy)|.
+    /// Relative differences of densities: a constant, and one for each unit of |ln(D σx σy)|.
     pub density: [f64; 2],
     /// Albedos for γ below [`SLOW`] and cosines below 1e-6, and below 1e-20. Albedos approach their
     /// limit with a power of about 0.002 of the cosine, by which both sides extrapolate in single

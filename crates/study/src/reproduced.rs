@@ -1,5 +1,5 @@
-//! Numbers that papers print with figures drawn by `microfacet-bake plot`, computed again: `cargo
-//! run --release -p microfacet-study -- reproduced`.
+//! Numbers that papers print with figures drawn by `microfacet-bake plot`, computed again:
+//! `cargo run --release -p microfacet-study -- reproduced`.
 
 use std::f64::consts::FRAC_PI_2;
 

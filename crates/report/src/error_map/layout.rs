@@ -29,8 +29,7 @@ const OVER: [usize; 2] = [41, 6];
 /// Seconds of one thread that a map may take.
 const LIMIT: f64 = 1.5;
 
-/// Quantities for y and x of the first map, the most informative pair first: a table's first is
-/// taken.
+/// Quantities for y and x of the first map, by priority: a table gets the first pair that it has.
 const FIRST: [(Quantity, Quantity); 9] = [
     (Quantity::Sigma, Quantity::Cosine),
     (Quantity::Azimuth, Quantity::Cosine),
@@ -134,8 +133,7 @@ impl Layout {
         self.counts[1..].iter().product()
     }
 
-    /// All points with the numbers of their pixels, row by row from low y; the last axis is
-    /// fastest.
+    /// All points with their pixels' numbers, row by row from low y; the last axis is fastest.
     pub(super) fn places(&self, table: &Table, spans: &[Span]) -> Vec<(Place, usize)> {
         let mut all: Vec<(Place, usize)> = vec![([0.0; AXES], 0)];
         for axis in 0..AXES {

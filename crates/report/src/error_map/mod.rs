@@ -109,7 +109,7 @@ pub fn measure(
     }
     let worst = |axis: usize| spans[axis].worst(table);
     let y = sides.y.map_or(Some(0.5), worst);
-    // An axis of one node has no other value that the map could have been measured at.
+    // An axis of one node has no other value.
     let fixed = layout.fixed.iter().filter(|&&i| table.axes[i].nodes.len() > 1);
     Ok(ErrorMap {
         columns: layout.pixels[0],

@@ -75,7 +75,7 @@ fn ruler(set: &Tables) -> Ruler<'_> {
     Ruler::new(set, table, table.subject.lobe.s())
 }
 
-/// The share along s for a share along γ: γ ascends along an axis of a map, and s falls with γ.
+/// The share along s for a share along γ: γ ascends along an axis of a map, and s falls as γ rises.
 fn ascending(share: f64) -> f64 {
     1.0 - share
 }

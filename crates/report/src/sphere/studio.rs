@@ -68,8 +68,7 @@ fn smoothstep(from: f32, to: f32, x: f32) -> f32 {
 }
 
 impl Lamp {
-    /// The point on the lamp in a direction, in halves of its edges, and the cosine; `None`
-    /// outside.
+    /// The point on the lamp in a direction, in halves of its edges, and the cosine; else `None`.
     fn place(&self, d: Vec3) -> Option<(Vec2, f32)> {
         let z = d.dot(self.towards);
         if !(z > 1e-3) {

@@ -9,8 +9,7 @@ use crate::plot::{Axis, Curve, Dash, Key, Panel};
 use crate::words::number;
 
 const POINTS: usize = 200;
-/// Ends of the axis of errors of G1: below the rounding of single precision, and the least high
-/// end.
+/// Ends of the axis of errors of G1: below the rounding of single precision, and the least top.
 const LEAST: f64 = 1e-9;
 const HIGH: f64 = 1e-6;
 

@@ -68,7 +68,7 @@ impl Spheres {
 }
 
 const SHAPES: [f64; 6] = [1.51, 1.65, 2.0, 4.0, 10.0, 50.0];
-/// The number of the first shapes, which lose much light after one bounce.
+/// The number of shapes, from the first, that lose much light after one bounce.
 const COMPENSATED: usize = 3;
 const SIGMA: f64 = 0.3;
 /// Brushed: rough around the vertical axis, smoother along it.
