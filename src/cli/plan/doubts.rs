@@ -80,7 +80,7 @@ pub(in crate::cli) fn warn<'a>(parts: impl Iterator<Item = (&'a Scene, &'a Plan)
     warn_of_lost(parts);
 }
 
-/// [`warn`] after long work that began with the warnings of the scene: these are only counted.
+/// [`warn()`] after long work that began with the warnings of the scene: these are only counted.
 pub(in crate::cli) fn remind<'a>(parts: impl Iterator<Item = (&'a Scene, &'a Plan)> + Clone) {
     let warnings: usize = parts.clone().map(|(scene, _)| scene.warnings.len()).sum();
     if warnings > 0 {
