@@ -2,7 +2,7 @@
 //! from a scene or recipe to a tested set.
 //!
 //! The command `microfacet-bake` does the same, and more. A renderer that bakes at load links
-//! `microfacet-baker` alone; each crate behind these names says in its own pages what else it has:
+//! `microfacet-baker` alone; the documentation of each crate says what else it has:
 //! [`microfacet_baker`] (recipes, plans, tables, certificates, files), [`microfacet_scene`]
 //! (importers), [`microfacet_validate`], [`microfacet_export`], [`microfacet_fit`] and
 //! [`microfacet_report`].

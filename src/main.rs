@@ -11,7 +11,7 @@ fn main() -> ExitCode {
     cli::main()
 }
 
-/// A panic as a message to the user in one line: it is never their fault.
+/// A panic as a message in one line, since every panic is a bug of this program.
 fn bug(panic: &str) -> String {
     let what = panic.lines().collect::<Vec<_>>().join(" ");
     let version = env!("CARGO_PKG_VERSION");

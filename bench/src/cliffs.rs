@@ -1,7 +1,7 @@
 //! The cliffs of the run-time crate: how much slower than its common case it can become.
 //!
-//! All times of this module take turns in one process, over the shapes of the sweep at one
-//! roughness. Calls are in a plain loop over arrays, as a user's program has them.
+//! All times of this module are taken in turns in one process, over the shapes of the sweep at one
+//! roughness. Calls are in a plain loop over arrays, as in a user's program.
 
 use std::cell::RefCell;
 use std::hint::black_box;
@@ -23,14 +23,14 @@ use crate::sweep::domain::{GAMMAS, Numbers, Views, WHOLE};
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum What {
     Sample,
-    /// The same, of views that are put together from three arrays of components.
+    /// `Sample`, with views assembled from three arrays of components.
     SampleOfComponents,
     Batch,
     /// 5 % of the pairs of random numbers have one of the two at an end.
     BatchOfEnds,
     /// All views are straight down.
     BatchDown,
-    /// A normal bounded to reflections, its view prepared for it alone.
+    /// A normal bounded to reflections, with a view prepared for one draw.
     Bounded,
     BoundedBatch,
     Density,
@@ -39,7 +39,7 @@ enum What {
     Conductor,
 }
 
-/// The figures; those of ellipsoids are of the sweep.
+/// All figures; those of ellipsoids come from the sweep.
 pub(crate) fn figures(set: &Tables, sweep: &[Summary], settings: &Settings) -> Vec<Figure> {
     use What::*;
     let times = Times::measure(set, settings);
@@ -76,7 +76,7 @@ pub(crate) fn figures(set: &Tables, sweep: &[Summary], settings: &Settings) -> V
     ]
 }
 
-/// Random inputs, and two classes that are not.
+/// Random inputs, and inputs of two other classes.
 struct Classes {
     random: Inputs,
     /// The components of the random views.
@@ -100,7 +100,8 @@ impl Classes {
         }
     }
 
-    /// All that is timed of a lobe. A closure for each: one that is used twice is not inlined.
+    /// Everything that is timed of a lobe, each with its own closure: one that is used twice is not
+    /// inlined.
     fn of_lobe(&self, lobe: &StudentT) -> [(What, Calls<'_>); 10] {
         let random = &self.random;
         let [a, b, c] = [(); 3].map(|()| lobe.clone());
@@ -129,7 +130,7 @@ impl Classes {
         ]
     }
 
-    /// Calls over arrays of components. A renderer's view, too, comes from three registers; a
+    /// Calls over arrays of components. A renderer's view comes from three registers as well; a
     /// function that is not inlined then finds it in memory in three parts.
     fn of_components<'a>(&'a self, one: impl Fn(Vec3, [f32; 2]) -> Vec3 + 'a) -> Calls<'a> {
         let [x, y, z] = &self.components;
@@ -175,11 +176,11 @@ fn densities<'a>(
 struct Times {
     /// GGX by spherical caps, as listed: of an array of views, and of arrays of components.
     caps: [f64; 2],
-    /// The closed form of the run-time crate, of the same.
+    /// The closed form of the run-time crate, for the same two inputs.
     ggx: [f64; 2],
     /// The conductor of GGX by hand, with Schlick's reflectance.
     by_hand: f64,
-    /// Everything of a lobe, by γ.
+    /// The times of each [`What`], by γ.
     lobes: Vec<(f64, What, f64)>,
 }
 
@@ -202,7 +203,7 @@ impl Times {
                 runs.push(calls);
             }
         }
-        // There are so many that fewer rounds must suffice.
+        // A quarter of the rounds, since there are many runs.
         let times = clock::medians(&mut runs, settings.rounds.div_ceil(4), settings.calls);
         let lobes = of_lobes.iter().zip(&times[5..]).map(|(&(gamma, what), &ns)| (gamma, what, ns));
         Self {
@@ -213,7 +214,7 @@ impl Times {
         }
     }
 
-    /// The times of one kind, of the shapes that are asked for.
+    /// The times of one kind over a selection of shapes.
     fn of(&self, what: What, shapes: Shapes) -> Vec<f64> {
         let of_kind = self.lobes.iter().filter(|&&(gamma, kind, _)| kind == what && shapes(gamma));
         of_kind.map(|&(_, _, ns)| ns).collect()
@@ -234,19 +235,19 @@ impl Times {
     }
 }
 
-/// Some of the shapes.
+/// A selection of shapes γ.
 type Shapes = fn(f64) -> bool;
 
 fn all(_: f64) -> bool {
     true
 }
 
-/// Those with a heavy part in closed form.
+/// Shapes with a heavy part in closed form.
 fn peeled(gamma: f64) -> bool {
     gamma < WHOLE
 }
 
-/// Those that are tabulated as a whole.
+/// Shapes that are tabulated as a whole.
 fn whole(gamma: f64) -> bool {
     gamma >= WHOLE
 }

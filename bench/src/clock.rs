@@ -13,7 +13,7 @@ pub(crate) type Calls<'a> = Box<dyn FnMut(Range<usize>) + 'a>;
 /// scheduler's time slice, so that most batches are not interrupted.
 const BATCH_NS: f64 = 1e5;
 
-/// Nanoseconds a call of each, over `rounds` batches of inputs from `count`.
+/// Nanoseconds a call of each rival, the median over `rounds` batches of inputs from `count`.
 pub(crate) fn medians(rivals: &mut [Calls], rounds: usize, count: usize) -> Vec<f64> {
     let time = |rival: &mut Calls, range: Range<usize>| {
         let calls = range.len() as f64;
@@ -43,7 +43,6 @@ pub(crate) fn medians(rivals: &mut [Calls], rounds: usize, count: usize) -> Vec<
     times.into_iter().map(median).collect()
 }
 
-/// The median.
 pub(crate) fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]

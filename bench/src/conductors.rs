@@ -15,7 +15,7 @@ use crate::rival::{Rival, lobe};
 use crate::rivals::conductor::GgxConductor;
 use crate::settings::{GAMMA, SIGMA};
 
-/// Reflectance at normal incidence, of Schlick's.
+/// F0 of Schlick's reflectance, by channel.
 const F0: [f32; 3] = [0.9, 0.7, 0.3];
 
 /// Names that figures refer to: the hand-written GGX and the table, with Schlick's reflectance and
@@ -35,8 +35,8 @@ impl Hits {
         Self { seen: Inputs::new(seed, count), lights }
     }
 
-    /// Calls of `one` with a view, a light and a pair of numbers; its results are used as sums,
-    /// which stay in registers: a structure in memory would cost more than it holds.
+    /// Calls of `one` with a view, a light and a pair of numbers. Its results are used as sums,
+    /// which stay in registers: to write a structure to memory would be timed too.
     fn calls<'a>(&'a self, one: impl Fn(Vec3, Vec3, [f32; 2]) -> [f32; 4] + 'a) -> Calls<'a> {
         Box::new(move |at| {
             let views = &self.seen.views[at.clone()];
@@ -67,20 +67,20 @@ impl Hits {
         self.calls(move |v, l, u| used(rival.sample(v, u), rival.eval_pdf(v, l)))
     }
 
-    /// The same with Schlick's reflectance.
+    /// GGX by hand with Schlick's reflectance.
     pub(crate) fn by_hand_schlick(&self) -> Calls<'_> {
         self.by_hand(|cos| F0.map(|f0| schlick(f0, 1.0, cos)))
     }
 }
 
-/// Both results, each number of them.
+/// Sums that depend on every number of both results.
 #[inline(always)]
 fn used(path: Option<(Vec3, [f32; 3], f32)>, (f, pdf): ([f32; 3], f32)) -> [f32; 4] {
     let (l, weight, drawn) = path.unwrap_or_default();
     [weight[0] + f[0], weight[1] + f[1], weight[2] + f[2], pdf + drawn + (l.x + l.y + l.z)]
 }
 
-/// Schlick's reflectance, as every rival has it.
+/// Schlick's reflectance, the same for every rival.
 pub(crate) fn schlick_fresnel() -> ConductorFresnel {
     ConductorFresnel::schlick(F0).expect("a constant")
 }

@@ -13,9 +13,7 @@ use crate::settings::SIGMA;
 /// Largest and root-mean-square error over the inputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Error {
-    /// Largest.
     pub(crate) max: f64,
-    /// Root mean square.
     pub(crate) rms: f64,
 }
 
@@ -76,19 +74,19 @@ fn cdfs(truth: &StudentT, v: DVec3, m: DVec3) -> [f64; 2] {
     [VisibleSlope::new(shape, view).cdf(signed(x / m.z)), across_cdf(shape, signed(t))]
 }
 
-/// The error of a form of G1, absolute.
+/// The absolute error of G1.
 pub(crate) fn masking_error(rival: &Rival<Evaluate>, inputs: &Inputs) -> Error {
     let truth = truth(rival.gamma);
     let error = |(w, g1): (&Vec3, f32)| (f64::from(g1) - truth.g1(w.as_dvec3())).abs();
     Error::of(inputs.views.iter().zip(evaluated(rival, inputs)).map(error))
 }
 
-/// The error of a form of D, relative.
+/// The relative error of D.
 pub(crate) fn density_error(rival: &Rival<Evaluate>, normals: &Inputs) -> Error {
     let truth = truth(rival.gamma);
     Error::of(normals.views.iter().zip(evaluated(rival, normals)).filter_map(|(m, d)| {
         let exact = truth.d(m.as_dvec3());
-        // Less is subnormal in single precision.
+        // Smaller values are subnormal in single precision.
         (exact > 1e-37).then(|| (f64::from(d) / exact - 1.0).abs())
     }))
 }

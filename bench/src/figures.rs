@@ -1,4 +1,4 @@
-//! The figures that say whether tables are worth having, as ratios of times within one run.
+//! The figures that decide whether tables are worthwhile, as ratios of times within one run.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -19,7 +19,6 @@ use crate::{clock, conductors, values};
 /// One figure with its limit and its goal; smaller is better.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Figure {
-    /// What it compares.
     pub(crate) name: &'static str,
     /// Its unit; empty for a ratio.
     pub(crate) unit: &'static str,
@@ -101,7 +100,7 @@ fn certified(set: &Tables) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The median time of single calls, which are numbered.
+/// The median time of single calls, in nanoseconds; `call` is given their number.
 fn median_ns<T>(settings: &Settings, call: impl Fn(usize) -> T) -> f64 {
     let times = (0..settings.rounds.max(40)).map(|i| {
         let start = Instant::now();

@@ -18,8 +18,8 @@ pub(crate) fn write(folder: &Path, files: &[(&str, Vec<u8>)]) -> Result<(), Fail
     Ok(())
 }
 
-/// Records as a table, with these names of its columns; the fields' own where none are given, of
-/// records without arrays.
+/// Records as CSV with these names of columns, or with the names of fields if there are none;
+/// records with arrays need names.
 pub(crate) fn csv<T: Serialize>(
     header: &[&str],
     records: impl IntoIterator<Item = T>,

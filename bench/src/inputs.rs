@@ -19,11 +19,10 @@ pub(crate) struct Inputs {
     pub(crate) numbers: Vec<[f32; 2]>,
 }
 
-/// How many views and pairs of numbers there are.
+/// Number of views, and of pairs of numbers.
 pub(crate) const COUNT: usize = 16_384;
 
 impl Inputs {
-    /// `count` of each.
     pub(crate) fn new(seed: u64, count: usize) -> Self {
         let mut random = StdRng::seed_from_u64(seed);
         let mut pairs =
@@ -33,7 +32,7 @@ impl Inputs {
     }
 }
 
-/// The unit vector of an elevation, as its cosine from n, and an azimuth in turns.
+/// The unit vector with this cosine to n and an azimuth in turns.
 pub(crate) fn direction(cos: f32, turn: f32) -> Vec3 {
     let (y, x) = (TAU * turn).sin_cos();
     let sin = (1.0 - cos * cos).max(0.0).sqrt();
@@ -44,7 +43,7 @@ pub(crate) fn direction(cos: f32, turn: f32) -> Vec3 {
 const STREAM: usize = 1 << 16;
 
 /// Random numbers uniform in [0, 1) for rivals that need a varying number of them: drawn
-/// beforehand, as the others' are, so that no rival pays for a generator.
+/// beforehand, so that no time includes a generator.
 #[derive(Clone, Debug)]
 pub(crate) struct Stream {
     numbers: Box<[f32; STREAM]>,

@@ -138,7 +138,7 @@ fn run(Args { part, options }: Args) -> Result<(), Failure> {
 /// What one run is to write, by name, and to print.
 type Results = (Vec<(&'static str, Vec<u8>)>, String, Value);
 
-/// All rivals, the sweep, and the paper; files only if they are asked for.
+/// All rivals, the sweep, and the paper; without files unless `files` is true.
 fn everything(settings: &Settings, files: bool) -> Result<Results, Failure> {
     let slices = Slices::bake();
     stage("rivals: times and errors");
@@ -171,7 +171,8 @@ fn everything(settings: &Settings, files: bool) -> Result<Results, Failure> {
     Ok((files, text.join("\n"), json))
 }
 
-/// Says on a terminal what is measured now: a bar would need a thread beside the one that is timed.
+/// Says on a terminal what is measured: a progress bar would need a second thread next to the one
+/// that is timed.
 fn stage(what: &str) {
     if io::stderr().is_terminal() {
         eprintln!("{what}");

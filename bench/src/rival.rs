@@ -23,12 +23,12 @@ pub(crate) struct Rival<F> {
 }
 
 impl<F> Rival<F> {
-    /// A form without tables.
+    /// A rival without tables.
     pub(crate) fn form(name: &'static str, gamma: f64, run: F) -> Self {
         Self { name, gamma, bytes: 0, stored: 0, run }
     }
 
-    /// The same as a lookup in the tables of a set.
+    /// The rival, with the bytes of the tables of a set.
     pub(crate) fn of(self, set: &Tables) -> Self {
         let lookups = set.tables().iter().filter(|table| !table.kind.is_albedo());
         let stored = lookups.map(Table::stored_bytes).sum();
@@ -48,8 +48,8 @@ pub(crate) fn each<'a>(one: impl Fn(Vec3, [f32; 2]) -> Vec3 + 'a) -> Draw<'a> {
     in_a_loop(move |v, u| black_box(one(v, u)))
 }
 
-/// The same as a loop over arrays, which the compiler may turn into vectors. It does that with
-/// closed forms that have no branches, and not with lookups.
+/// Calls in a loop over arrays, which the compiler may vectorise: it does that with closed forms
+/// that have no branches, and not with lookups.
 pub(crate) fn in_a_loop<'a>(one: impl Fn(Vec3, [f32; 2]) -> Vec3 + 'a) -> Draw<'a> {
     Box::new(move |v, u, m| {
         for ((v, u), m) in v.iter().zip(u).zip(m) {

@@ -13,7 +13,6 @@ use crate::settings::Settings;
 use crate::tables::Slices;
 use crate::values::{densities, maskings, seen};
 
-/// The quantity of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Quantity {

@@ -27,7 +27,7 @@ pub(crate) type Exactly = fn(f64, DVec3, [f64; 2]) -> DVec3;
 pub(crate) enum Check {
     /// The CDFs along and across the plane of incidence are the random numbers.
     Cdf,
-    /// The same, but the tilt falls with the first number.
+    /// The CDFs are the random numbers, but the tilt falls with the first.
     Falling,
     /// The normal that the same formula gives in double precision.
     Formula(Exactly),
@@ -36,7 +36,7 @@ pub(crate) enum Check {
     Distribution,
 }
 
-/// The density it draws from, for the weights of an estimator.
+/// The density that a sampler draws from, for the weights of an estimator.
 pub(crate) enum Density {
     /// Visible normals.
     Visible,
@@ -69,7 +69,7 @@ fn with_density<'a>(rival: Rival<Sampler<'a>>, density: Density) -> Rival<Sample
     Rival { run: Sampler { density, ..rival.run }, ..rival }
 }
 
-/// The same as a function for one view.
+/// A sampler of visible normals from a function for one view.
 fn one<'a>(
     name: &'static str,
     gamma: f64,

@@ -30,11 +30,11 @@ pub(crate) struct Settings {
     pub(crate) draws: usize,
     /// Batches of a cell of the sweep, each of other inputs.
     pub(crate) sweep_batches: usize,
-    /// Calls of such a batch.
+    /// Calls of a batch of the sweep.
     pub(crate) sweep_calls: usize,
     /// How finely a picture is made that is timed.
     pub(crate) timed: Film,
-    /// How often it is made; the median is taken.
+    /// How often the timed picture is made; the median is taken.
     pub(crate) picture_rounds: usize,
     /// How finely a picture is made that is compared.
     pub(crate) shown: Film,
@@ -74,7 +74,7 @@ impl Settings {
         (self.seed ^ (self.seed >> 32)) as u32
     }
 
-    /// The same over `calls` inputs, with no other count above that.
+    /// These settings over `calls` inputs, with no other count above `calls`.
     pub(crate) fn with_calls(self, calls: usize) -> Self {
         let calls = calls.clamp(1, COUNT);
         let few = |n: usize| n.min(calls);

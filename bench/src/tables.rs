@@ -31,7 +31,6 @@ impl Slices {
         ])
     }
 
-    /// One of the sets.
     pub(crate) fn get(&self, name: &str) -> &Tables {
         &self.0.iter().find(|(of, _)| *of == name).expect("a name of the list").1
     }
@@ -46,7 +45,6 @@ impl Slices {
         self.get(WHOLE)
     }
 
-    /// Each with its name.
     pub(crate) fn each(&self) -> impl Iterator<Item = &(&'static str, Tables)> {
         self.0.iter()
     }

@@ -5,7 +5,6 @@ use crate::rows::{Quantity, Row};
 use crate::settings::SIGMA;
 use crate::sweep::Summary;
 
-/// The rows.
 pub(crate) fn table(rows: &[Row]) -> String {
     let mut text =
         format!("sigma {}; errors are of the CDFs, or of G1, absolute, or of D, relative\n", SIGMA);

@@ -1,5 +1,5 @@
-//! The functions of one direction that are compared: forms of Smith's G1, and of D. That of
-//! Student-t is a closed form for every γ, with a power where GGX has a square.
+//! The functions of one direction that are compared: Smith's G1, and D. D of Student-t has a closed
+//! form for every γ, with a power where GGX has a square.
 
 use glam::Vec3;
 use microfacet_model as model;
@@ -23,7 +23,7 @@ fn form<'a>(name: &'static str, gamma: f64, one: impl Fn(Vec3) -> f32 + 'a) -> R
     Rival::form(name, gamma, each_value(one))
 }
 
-/// The forms of G1, over the given tables.
+/// The computations of G1, over the given tables.
 pub(crate) fn maskings(slices: &Slices) -> Vec<Rival<Evaluate<'static>>> {
     let sigma = SIGMA as f32;
     let (any, four) = (Lobe::any(SIGMA, GAMMA), Lobe::four(SIGMA));
@@ -51,7 +51,7 @@ pub(crate) fn maskings(slices: &Slices) -> Vec<Rival<Evaluate<'static>>> {
     all
 }
 
-/// The forms of D, of a shape below 1.8 and of Beckmann too.
+/// The computations of D, also of a shape below 1.8 and of Beckmann.
 pub(crate) fn densities(slices: &Slices) -> Vec<Rival<Evaluate<'static>>> {
     let sigma = SIGMA as f32;
     let power = model::StudentT::new(SIGMA, GAMMA).expect("constants");
@@ -66,7 +66,7 @@ pub(crate) fn densities(slices: &Slices) -> Vec<Rival<Evaluate<'static>>> {
     all
 }
 
-/// The normals to evaluate them for: those that the views of some inputs see.
+/// The normals to evaluate D for: those that the views of some inputs see.
 pub(crate) fn seen(slices: &Slices, inputs: &Inputs) -> Inputs {
     let lobe = lobe(slices.whole(), GAMMA);
     let mut views = inputs.views.clone();

@@ -90,7 +90,7 @@ fn every_rival_is_measured_and_written() {
 
     let drawn = std::fs::read_to_string(at.join("out/bench.svg")).unwrap();
     assert!(drawn.starts_with("<svg") && drawn.contains("table"));
-    // The paper is part of it; its own test has the values.
+    // The files of the paper are written as well; their values have a test of their own.
     assert!(at.join("out/figure-4.csv").exists() && json["paper"]["figure_6"].is_array());
 }
 
@@ -98,7 +98,7 @@ fn every_rival_is_measured_and_written() {
 /// its cells.
 fn sweep_is_whole(cells: &[Record], json: &serde_json::Value) {
     let summaries = json["sweep"].as_array().unwrap();
-    // Eleven functions of every lobe, and one of Student-t alone.
+    // Eleven functions of each of three lobes, and two of bounded lobes.
     assert_eq!(summaries.len(), 3 * 11 + 2);
     for summary in summaries {
         let function = summary["function"].as_str().unwrap();
@@ -142,7 +142,7 @@ fn each_figure_is_printed_and_written() {
     }
     assert!(!text.contains("sweep"), "{text}");
 
-    // Every form in both rows, over both coordinates.
+    // Every computation, alone and in pictures, over both coordinates.
     let times = read(&at.join("out/figure-4.csv"));
     assert!(times.iter().all(|time| number(time, "ns") > 0.0));
     for by in ["gamma", "sigma"] {
@@ -159,8 +159,8 @@ fn each_figure_is_printed_and_written() {
         assert!(table("g1").len() >= 8 && table("g1") == table("picture"), "{by}");
     }
 
-    // What is found over θ in single precision is found over cot θ/σ in double. (For γ = 1.6 the
-    // largest error is at normal incidence, where no θ of the first stands.)
+    // The largest errors over θ in single precision and over cot θ/σ in double agree. γ = 1.6 is
+    // left out: its largest error is at normal incidence, which the first does not contain.
     let errors = read(&at.join("out/figure-5.csv"));
     assert!(largest(&errors, "table_error") < 1e-5);
     let integrated = read(&at.join("out/figure-5-integrated.csv"));
@@ -194,7 +194,7 @@ fn each_figure_is_printed_and_written() {
     assert!(!at.join("out/bench.csv").exists());
 }
 
-/// Options may stand on either side of the part.
+/// Options may be given before and after the subcommand.
 #[test]
 fn what_cannot_be_measured_or_written_is_refused() {
     let folder = tempfile::tempdir().unwrap();

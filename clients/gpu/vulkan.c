@@ -1,5 +1,5 @@
 /* Runs the program of `microfacet-bake export spirv --gamma 3` on the first device of Vulkan: takes
- * the folder of the export, reflects the view of `clients/c/lookup.c`, and prints what that prints.
+ * the folder of the export, reflects the view of `clients/c/lookup.c`, and prints the same lines.
  * Exit status 1 if the device fails. */
 #include <stdio.h>
 #include <stdlib.h>

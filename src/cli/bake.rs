@@ -92,7 +92,7 @@ pub(super) struct Args {
     json: bool,
 }
 
-/// Parses the largest size of a set: what is read back.
+/// Parses the largest size of a set, which must be one that can be read back.
 fn parse_size(text: &str) -> Result<usize, String> {
     let bytes = values::size(text)?;
     let small = usize::try_from(bytes).ok().filter(|_| bytes <= MAX_TABLES);
@@ -121,7 +121,7 @@ impl Args {
         Settings { cache, max_memory, patient, progress: Meter::default() }
     }
 
-    /// Reads a scene, says what is doubtful in it before hours are spent, and plans its sets.
+    /// Reads a scene, warns of what is doubtful in it before the long bake, and plans its sets.
     fn library(&self, path: &Path) -> Result<Library> {
         ensure!(
             !path.is_dir(),
@@ -134,7 +134,7 @@ impl Args {
         self.request.library(scene, self.max_error)
     }
 
-    /// Refuses a set that could not be read back, before hours are spent on it.
+    /// Refuses a set that could not be read back, before it is baked.
     fn check_bytes(&self, plan: &Plan) -> Result<()> {
         let Target::Quality(quality, precision) = self.target() else { return Ok(()) };
         let cost: Cost = costs(plan, quality, precision)?.into_iter().sum();
@@ -165,7 +165,7 @@ impl Args {
         }
     }
 
-    /// What a bake leaves if it is interrupted.
+    /// Sets the message of an interrupt: what the bake leaves.
     fn say_what_is_left(&self, folder: &Path, out: &OutputFolder, cache: &Cache) {
         let (folder, written, kept) = (folder.display().to_string(), out.written(), cache.kept());
         interrupt::leaves(move || {
@@ -263,7 +263,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     Ok(())
 }
 
-/// Says if what was baked could not be kept.
+/// Warns if finished tables could not be cached.
 fn warn_of_cache(baked: &Baked) {
     if let Some(why) = &baked.cache_error {
         let fix = "name a folder with --cache, or use --no-cache";

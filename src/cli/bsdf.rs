@@ -81,7 +81,7 @@ enum Test {
     Reciprocity,
 }
 
-/// Lights of a furnace's samples, and pairs of directions of each BSDF.
+/// Sampled lights of a furnace, and pairs of directions of each BSDF.
 const FURNACE_SAMPLES: usize = 100_000;
 const PAIRS_OF_DIRECTIONS: usize = 10_000;
 
@@ -90,7 +90,6 @@ impl Args {
         self.only.is_empty() || self.only.contains(&test)
     }
 
-    /// Bakes with a bar.
     fn bake(
         &self,
         of: impl FnOnce(Settings) -> Result<Tables, specimen::Unmade>,

@@ -1,21 +1,21 @@
 //! Makes text from files safe to print: names in a scene or a table file may hold characters that
-//! command a terminal, or that reverse what is read.
+//! control a terminal, or that reverse the order of text.
 
 use std::borrow::Cow;
 
-/// A text of several lines, with every such character written out, as `\u{1b}`.
+/// A text of several lines, with every hidden character written out, as `\u{1b}`.
 pub(super) fn lines(text: &str) -> Cow<'_, str> {
     escaped(text, |c| is_hidden(c) && !matches!(c, '\n' | '\t'), char::escape_unicode)
 }
 
-/// A text that stays within its line: breaks are written out as well.
+/// A text of one line, with hidden characters and line breaks written out.
 pub(super) fn line(text: &str) -> Cow<'_, str> {
     escaped(text, is_hidden, char::escape_default)
 }
 
-/// A JSON document with such characters as JSON writes them; they occur in its strings alone.
+/// A JSON document with hidden characters as escapes of JSON; they occur in its strings alone.
 pub(super) fn json(text: &str) -> Cow<'_, str> {
-    // None is above U+FFFF, where JSON has pairs.
+    // None is above U+FFFF, where JSON needs pairs.
     let hidden = |c: char| is_hidden(c) && c != '\n';
     escaped(text, hidden, |c| format!("\\u{:04x}", u32::from(c)).chars().collect::<Vec<_>>())
 }

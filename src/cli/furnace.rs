@@ -111,7 +111,7 @@ pub(super) fn run(args: &Args) -> Outcome {
 fn deviations(row: &Furnace, walk: Option<&Walk>, masking: Masking) -> Vec<String> {
     let mut found = Vec::new();
     let off = row.kulla_conty - 1.0;
-    // Written so that a NaN fails, here and below.
+    // The negated comparison fails for NaN.
     if !(off.abs() <= TOLERANCE) {
         found.push(format!("Kulla-Conty is 1 {off:+.2e}, and 1 +- {TOLERANCE:e} is allowed"));
     }
@@ -171,8 +171,8 @@ fn as_json(row: &Furnace, walk: Option<Walk>, deviations: &[String]) -> Value {
     })
 }
 
-/// The average albedo, γ down and σ across: the quantity that figure 9 of Ribardière et al. 2017
-/// shows as spheres. A dash stands where the set covers no such pair.
+/// The average albedo, γ down and σ across, the quantity that figure 9 of Ribardière et al. 2017
+/// shows as spheres; a dash for a pair that the set does not cover.
 fn average(materials: &[(f64, f64)], set: &Tables, masking: Masking) -> Result<String> {
     let sigmas = distinct(materials.iter().map(|material| material.0));
     let mut text = String::from("| gamma |");

@@ -16,17 +16,17 @@ type Left = Box<dyn Fn() -> String + Send>;
 /// What an interrupted command leaves.
 static LEFT: Mutex<Option<Left>> = Mutex::new(None);
 
-/// Sets what is said if the command is interrupted from here on; it is asked for at that moment.
+/// Sets what is said if the command is interrupted from here on; `what` is called then.
 pub(super) fn leaves(what: impl Fn() -> String + Send + 'static) {
     *LEFT.lock().unwrap_or_else(PoisonError::into_inner) = Some(Box::new(what));
 }
 
-/// The same for a command that writes to standard output.
+/// [`leaves`] for a command that writes to standard output.
 pub(super) fn leaves_stream() {
     leaves(|| "standard output ends early".into());
 }
 
-/// Brings the files in order and says what is left.
+/// Waits for a write that is under way, and says what is left.
 fn prepare() {
     progress::hide();
     let whole = store::quiesce(PATIENCE);
@@ -36,7 +36,8 @@ fn prepare() {
         Some(left) => left(),
         None => "nothing was written".into(),
     };
-    // Not around the bar: a print under way may be waiting for a reader that has stopped.
+    // Without the lock of the bar: a print that holds it may be waiting for a reader that has
+    // stopped.
     let _ = writeln!(io::stderr(), "{}", styled("interrupted", &message));
 }
 
@@ -50,14 +51,14 @@ pub(super) fn watch() {
     use signal_hook::iterator::Signals;
     use signal_hook::{flag, low_level};
 
-    // Ignored already, as by `nohup` or for a job in the background: it stays so.
+    // A signal that is ignored already, as by `nohup` or in a background job, stays ignored.
     let ignored = ignored();
     let signals: Vec<i32> = [SIGINT, SIGTERM, SIGHUP]
         .into_iter()
         .filter(|signal| ignored & (1 << (signal - 1)) == 0)
         .collect();
-    // First of all: from its own handler on no signal is lost. Where none can be installed, the
-    // system's default stays.
+    // Handlers come first, so that no signal is lost. Where none can be installed, the system's
+    // default stays.
     let Ok(mut handled) = Signals::new(&signals) else { return };
     let again = Arc::new(AtomicBool::new(false));
     for &signal in &signals {
@@ -78,7 +79,7 @@ pub(super) fn watch() {
     }
 }
 
-/// The signals that are ignored, a bit each, where the kernel says so.
+/// The signals that are ignored, a bit each, where the kernel lists them; 0 elsewhere.
 #[cfg(unix)]
 fn ignored() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

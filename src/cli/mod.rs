@@ -87,7 +87,7 @@ enum Command {
 }
 
 impl Command {
-    /// Whether it divides work among threads, of which the others start none.
+    /// Whether the command divides work among threads; other commands start none.
     fn is_parallel(&self) -> bool {
         use Command::{Completions, Inspect, Man, Plot, Recipe, Sample};
         !matches!(self, Recipe(_) | Inspect(_) | Sample(_) | Plot(_) | Completions(_) | Man(_))
@@ -123,20 +123,20 @@ pub(crate) fn main() -> ExitCode {
         Ok(Done::Ok) => ExitCode::SUCCESS,
         Ok(Done::Rejected) => ExitCode::from(1),
         Err(why) => {
-            // Further lines are indented, so that none of them passes for a message of ours.
+            // Further lines are indented, so that none of them is taken for another message.
             say("error", &escape::lines(&remedy::told(&why)).replace('\n', "\n    "));
             ExitCode::from(2)
         }
     }
 }
 
-/// Runs a command with so many threads, or one a processor. Where the system does not start them,
-/// as where a container has no more processes, the main thread does the work alone.
+/// Runs a command with this many threads, or one for each processor. Where the system does not
+/// start them, as in a container that allows no more processes, the main thread does all work.
 fn among_threads(threads: Option<usize>, command: Command) -> Outcome {
     if !command.is_parallel() {
         return run(command);
     }
-    // Not rayon's global pool, which panics where it cannot be had, and is tried once only.
+    // Not rayon's global pool, which panics if it cannot be built, and is built once only.
     match ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build() {
         Ok(pool) => pool.install(|| run(command)),
         Err(why) => {
@@ -195,7 +195,7 @@ fn is_quiet() -> bool {
     QUIET.load(Relaxed)
 }
 
-/// Writes a line to standard error: a warning or a note, as `kind` says.
+/// Writes a line to standard error, of `kind` "warning" or "note".
 fn report(kind: &str, message: impl Display) {
     if kind != "note" || !is_quiet() {
         say(kind, &escape::line(&message.to_string()));
@@ -210,7 +210,7 @@ fn warn(message: impl Display) {
     report("warning", message);
 }
 
-/// Writes to standard error; where that fails, nothing is left to say it to.
+/// Writes to standard error; a failure is ignored, since no other stream is left.
 fn say(kind: &str, text: &str) {
     progress::above(|| {
         let _ = writeln!(io::stderr(), "{}", styled(kind, text));
@@ -236,7 +236,7 @@ fn coloured(word: &str, colour: AnsiColor, stream: &impl anstream::stream::RawSt
     }
 }
 
-/// Does work of so many seconds, about, with a bar.
+/// Does work of about this many seconds, with a progress bar.
 fn watched<T>(what: &'static str, seconds: f64, work: impl FnOnce(&Meter) -> T) -> T {
     let meter = Meter::default();
     meter.expect(seconds);
@@ -272,7 +272,7 @@ fn write_on(bytes: &[u8]) -> Result<bool> {
     let mut out = io::stdout();
     // Flushed, since an error that waits for the end of the process is lost.
     let mut all = || out.write_all(bytes).and_then(|()| out.flush());
-    // Elsewhere nothing is in the way, and a reader may keep the writer waiting.
+    // A file or pipe is written without the lock of the bar, since its reader may be slow.
     match if io::stdout().is_terminal() { progress::above(all) } else { all() } {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(false),
         result => result.context("standard output").map(|()| true),
@@ -293,7 +293,6 @@ fn unwritable(path: &Path, why: io::Error) -> Failure {
     anyhow!("{}: {why}{hint}", path.display())
 }
 
-/// Prints a value as JSON.
 fn print_json(value: &serde_json::Value) -> Result<()> {
     write(escape::json(&format!("{value:#}\n")).as_bytes())
 }

@@ -30,8 +30,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let Some(path) = args.out.as_deref().filter(|path| !is_stream(path)) else {
         return print(&plot::figure(&args.name)?.drawing().svg());
     };
-    // In letters of either case; a name that cannot be written is refused before anything is
-    // computed.
+    // The ending is in letters of either case; another one is refused before anything is computed.
     let ends_in = |ending| path.extension().is_some_and(|end| end.eq_ignore_ascii_case(ending));
     let is_svg = ends_in("svg");
     if !is_svg && !ends_in("png") {

@@ -43,7 +43,8 @@ pub(super) fn show(meter: &Meter, what: &'static str) -> Bar {
             *shown = Some(bar.clone());
         }
         while waits(TICK) {
-            // More work may turn up, as where tables are refined: the bar waits for it.
+            // The share falls if more work is found, as where tables are refined; the bar then
+            // stays.
             let position = (LENGTH as f64 * meter.share()) as u64;
             bar.set_position(position.max(bar.position()));
             bar.tick();
@@ -54,12 +55,12 @@ pub(super) fn show(meter: &Meter, what: &'static str) -> Bar {
     Bar(std::thread::Builder::new().spawn(draw).ok().map(|thread| (end, thread)))
 }
 
-/// The style of a bar; the length of a stream is not known. The time left is the meter's: that of
-/// the bar is by the steps of the last seconds, and stages differ.
+/// The style of a bar, or a spinner for a stream, whose length is not known. The time left is the
+/// meter's: the bar's own estimate takes the speed of the last seconds, and stages differ.
 fn style(meter: Meter, start: Instant) -> ProgressStyle {
     let is_known = meter.is_known();
     let left = move |_: &ProgressState, out: &mut dyn Write| {
-        // Writing to a terminal's line cannot usefully fail.
+        // A failure only leaves out the time.
         let _ = match meter.left(start.elapsed()) {
             Some(left) => write!(out, "{} left", HumanDuration(left)),
             None => Ok(()),
@@ -76,13 +77,13 @@ impl Drop for Bar {
     fn drop(&mut self) {
         if let Some((end, thread)) = self.0.take() {
             drop(end);
-            // A panic there has nothing to do with the work.
+            // A panic of the drawing thread does not affect the work.
             let _ = thread.join();
         }
     }
 }
 
-/// Removes the bar. Not from under a line that is being printed, whose reader may have stopped.
+/// Removes the bar, unless a print holds it for a second, whose reader may have stopped.
 pub(super) fn hide() {
     let deadline = Instant::now() + Duration::from_secs(1);
     loop {

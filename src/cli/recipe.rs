@@ -20,7 +20,7 @@ pub(super) struct Args {
 
 const STARTER: &str = include_str!("../../tables/recipes/starter.toml");
 
-/// What `--help` says of the keys.
+/// The keys of a material in `--help`.
 const KEYS: &str = "\
 Keys of a material (docs/recipe.md has all their forms):
   name          text of your choice, different for each material
@@ -48,8 +48,8 @@ pub(super) fn run(args: Args) -> Result<()> {
     summarize(&format!("{}\n", path.display()))
 }
 
-/// Refuses a file that exists already, since what it holds may be work that is nowhere else, and
-/// one that cannot be written.
+/// Refuses a file that exists already, since its contents may exist nowhere else, and one that
+/// cannot be written.
 pub(super) fn check_new(path: &Path) -> Result<()> {
     ensure!(
         path.symlink_metadata().is_err(),

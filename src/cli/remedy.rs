@@ -1,5 +1,5 @@
-//! What helps against an error of a library: options and recipes, which are the command's. The
-//! libraries say what is wrong, with numbers and what is allowed.
+//! Remedies for errors of the libraries: options and recipes, which only the command knows. The
+//! errors themselves say what is wrong and what is allowed.
 
 use anyhow::Error;
 
@@ -12,7 +12,7 @@ use microfacet_fit::merl::MerlError;
 use microfacet_report::ReportError;
 use microfacet_sampler::{BindError, MaterialError};
 
-/// An error with what it is an error of, and what helps.
+/// The message of an error, with its context and its remedy.
 pub(super) fn told(error: &Error) -> String {
     let mut text = String::new();
     for cause in error.chain().map(ToString::to_string) {
@@ -26,7 +26,7 @@ pub(super) fn told(error: &Error) -> String {
     text + &of(error).unwrap_or_default()
 }
 
-/// What follows the message of an error, if anything.
+/// The remedy that follows the message of an error.
 fn of(error: &Error) -> Option<String> {
     let fixed = if let Some(why) = error.downcast_ref() {
         match why {
@@ -56,7 +56,7 @@ fn of(error: &Error) -> Option<String> {
     Some(fixed.into())
 }
 
-/// What helps where a set lacks what was asked for.
+/// The remedy where a set lacks a material.
 fn of_material(why: &MaterialError) -> Option<String> {
     let set = |recipe: String, general: &str| {
         let without = "`microfacet-bake bake` without a recipe";

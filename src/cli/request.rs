@@ -124,7 +124,7 @@ impl Request {
         Ok((self.per_set, self.options(None)?))
     }
 
-    /// Options that leave tables out, each with what the scene is planned with if it is added.
+    /// Options that leave tables out, each with the planning options that it gives.
     pub(super) fn without(&self) -> Vec<(&'static str, Options)> {
         let add = |name, change: fn(&mut Self)| {
             let mut request = self.clone();
@@ -153,8 +153,8 @@ impl Request {
         })
     }
 
-    /// Refuses the set compiled in where it is not accurate enough, and returns whether its albedos
-    /// are; if not, better ones are baked.
+    /// Refuses the embedded set if its normals are not accurate enough, and returns whether its
+    /// albedos are; if not, albedos are baked.
     fn embedded_serves(&self, max_error: Option<f64>) -> Result<bool> {
         ensure!(
             self.quality != Quality::High,

@@ -126,8 +126,7 @@ fn write(draw: &Draw, args: &Args, stage: &Stage, out: &mut dyn Write) -> io::Re
     out.flush()
 }
 
-/// What stands before the values in a safetensors file: the length of the description, and the
-/// description.
+/// The beginning of a safetensors file: the length of the description, and the description.
 fn header(count: usize) -> io::Result<Vec<u8>> {
     let tensor = |shape: Vec<usize>, from: usize, to: usize| TensorInfo {
         dtype: Dtype::F32,
@@ -145,7 +144,7 @@ fn header(count: usize) -> io::Result<Vec<u8>> {
     Ok([&(text.len() as u64).to_le_bytes()[..], &text].concat())
 }
 
-/// Seconds for a normal, about; only its share of the whole counts.
+/// Approximate seconds for a normal; only the share of the whole counts.
 const SECONDS: f64 = 1e-7;
 
 pub(super) fn run(args: &Args) -> Result<()> {

@@ -1,4 +1,4 @@
-//! `completions` and `man`: what a shell and its reader know about this command.
+//! `completions` and `man`: completions for shells, and manual pages.
 
 use std::path::{Path, PathBuf};
 
@@ -34,8 +34,8 @@ pub(super) struct ManPages {
 }
 
 pub(super) fn completions(args: &Completions) -> Result<()> {
-    // Clap's script for bash splits labels at the two underscores that it puts for a hyphen, and
-    // then finds none of its own; so it gets a name without one.
+    // Clap's script for bash splits labels at two underscores, which it also writes for a hyphen,
+    // and then finds none of its labels: it is made for a name without a hyphen.
     let plain = NAME.replace('-', "");
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut Cli::command(), &plain, &mut script);
@@ -68,7 +68,7 @@ fn page(command: Command) -> Result<Vec<u8>> {
     Ok(text)
 }
 
-/// The name by which a page is found, in which hyphens take the place of spaces.
+/// The name of a manual page, with hyphens for spaces.
 fn page_name(command: &Command) -> String {
     command.get_bin_name().unwrap_or(NAME).replace(' ', "-")
 }

@@ -139,7 +139,7 @@ fn every_subcommand_has_examples_that_parse() {
             help.lines().filter_map(|line| line.split("microfacet-bake ").nth(1)).collect();
         assert!(!examples.is_empty(), "{name}");
         for example in examples {
-            // What follows is the shell's.
+            // Words after a pipe or a redirection belong to the shell.
             let ours = example.split_whitespace().take_while(|word| !["|", ">"].contains(word));
             let words = ["microfacet-bake"].into_iter().chain(ours);
             let error = parser::command().try_get_matches_from(words).err();

@@ -131,7 +131,7 @@ fn text(
     if result.rejected() > 0 {
         text += NEXT;
     }
-    // Chi-square may pass where an integral is not one. Written so that a NaN counts.
+    // Chi-square may pass where an integral is not one. The negated comparison is true for NaN.
     let off = result.worst_integral().map_or(0.0, |worst| worst.pdf_integral - 1.0);
     if !(off.abs() <= PDF_TOLERANCE) {
         text += &format!("the integral of table_pdf may differ from 1 by {PDF_TOLERANCE:e} only\n");

@@ -12,8 +12,8 @@ use microfacet_sampler::{Ggx, Masking};
 
 use super::{Result, anyhow, bail, ensure};
 
-/// A value of an option by its name, with what `--help` says of it. One of which nothing is said is
-/// another name of a value, and hidden.
+/// The name of a value of an option, its text in `--help`, and the value. An entry without a text
+/// is a hidden second name.
 pub(super) type Named<T> = (&'static str, &'static str, T);
 
 /// The name of a value.
@@ -60,7 +60,7 @@ pub(super) fn seed(text: &str) -> Result<u64, String> {
     count(0..=u64::MAX)(text)
 }
 
-/// Parses a number that is allowed; `must` says which numbers are.
+/// Parses a number that is allowed; `must` describes the allowed numbers in errors.
 pub(super) fn number(
     is_allowed: fn(&f64) -> bool,
     must: &'static str,
@@ -76,8 +76,7 @@ pub(super) fn finite(text: &str) -> Result<f64, String> {
     number(|x| x.is_finite(), "a finite number")(text)
 }
 
-/// Parses a factor on γ that makes tests reject. Beyond, a table of another shape is wrong whatever
-/// it holds.
+/// Parses a factor on γ that makes tests reject; one outside [0.5, 2] would reject any table.
 pub(super) fn factor(text: &str) -> Result<f64, String> {
     number(|x| (0.5..=2.0).contains(x), "a number in [0.5, 2]; 1 leaves gamma as it is")(text)
 }
@@ -115,7 +114,7 @@ pub(super) fn sigma(text: &str) -> Result<[f64; 2]> {
         let sigma = part.trim().parse().map_err(|_| {
             anyhow!("sigma \"{part}\" must be a number; give X, or X,Y for an anisotropic material")
         })?;
-        // Every lobe has the same range, and GGX needs no table to say it.
+        // The range of σ is the same for every lobe; `Ggx` checks it without a table.
         Ggx::new(sigma)?;
         Ok(sigma)
     };
@@ -131,7 +130,7 @@ pub(super) fn gamma(text: &str) -> Result<f64, String> {
     number(|&gamma| gamma > 1.5, "a number in (1.5, inf]; 2 is GGX, inf is Beckmann")(text)
 }
 
-/// Refuses a γ of the family that no table covers, of this set or any other; with what else helps.
+/// Refuses a γ below the smallest that any table covers; `remedy` ends the message.
 pub(super) fn tabulated(gammas: &[f64], remedy: &str) -> Result<()> {
     match gammas.iter().find(|&&gamma| gamma < GAMMA_MIN) {
         None => Ok(()),
@@ -169,7 +168,7 @@ impl Unit {
         Ok(self.angles().to_radians(x))
     }
 
-    /// What to say of an azimuth that may be in degrees: one of more than a turn.
+    /// A warning for an azimuth of more than a turn, which may be in degrees.
     pub(super) fn doubt(self, phi: f64) -> Option<String> {
         let turns = phi.abs() / TAU;
         (!self.degrees && phi.abs() > TAU + 1e-3).then(|| {

@@ -20,7 +20,7 @@ pub(super) struct View {
 }
 
 impl View {
-    /// theta and phi in radians; none without a theta. Says so if phi looks like degrees.
+    /// theta and phi in radians; `None` without a theta. Warns if phi looks like degrees.
     pub(super) fn angles(&self) -> Result<Option<[f64; 2]>> {
         let Some(theta) = self.theta else { return Ok(None) };
         let angles = [self.unit.theta(theta)?, self.unit.phi(self.phi)?];

@@ -9,7 +9,7 @@ pub(super) use microfacet_report::words::{
     bytes, count, error, exact_bytes, joined, number, range,
 };
 
-/// Prose in the output ends here.
+/// The column at which prose in the output is wrapped.
 pub(super) const COLUMNS: usize = 100;
 
 /// A time: `12 ms`, `20.8 s`, `7.5 h`.
@@ -120,7 +120,7 @@ pub(super) fn shell(path: &Path) -> String {
     match path.to_str().filter(visible) {
         Some(text) if !text.is_empty() && bytes.iter().all(plain) => format!("{dash}{text}"),
         Some(text) => format!("'{dash}{}'", text.replace('\'', r"'\''")),
-        // What no terminal shows is written by its bytes.
+        // Hidden characters are written by their bytes.
         None => {
             let byte = |&byte: &u8| match byte {
                 b'\'' | b'\\' => format!("\\{}", char::from(byte)),

@@ -13,7 +13,6 @@ use crate::settings::SIGMA;
 /// The errors for one view: a line of `figure-5.csv`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Approximation {
-    /// The shape.
     pub(crate) gamma: f64,
     /// Polar angle of the view, degrees.
     #[serde(rename = "theta_degrees")]

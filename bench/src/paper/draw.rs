@@ -31,7 +31,7 @@ impl Paper {
         Ok(files)
     }
 
-    /// One G1 above, a picture below it, and last a visible normal, over γ and over σ.
+    /// Rows for one G1, for a picture and for a visible normal, over γ and over σ.
     fn times_figure(&self) -> Figure {
         let quantities = [
             (Quantity::G1, "One G1", "ns a call", 1.0),
@@ -41,7 +41,7 @@ impl Paper {
         let panels = quantities.into_iter().flat_map(|(quantity, what, unit, scale)| {
             let of_quantity: Vec<&Timing> =
                 self.times.iter().filter(|time| time.quantity == quantity).collect();
-            // A clock may be too coarse to see a short batch.
+            // A coarse clock may give 0 for a short batch.
             let values = || of_quantity.iter().map(|time| scale * time.ns.max(0.1));
             let (low, high) =
                 (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max));
@@ -85,14 +85,14 @@ impl Paper {
     fn by_measure(&self) -> Panel {
         let curves = MEASURES.iter().enumerate().map(|(i, measure)| {
             let curve = self.error_curve(Key::Nth(i), measure.formula.into(), i, SIGMA);
-            // The last hides the one before it, as G1 is close to 1 where the error is largest.
+            // The last two coincide, since G1 is close to 1 where the error is largest.
             curve.dashed(if i + 1 == MEASURES.len() { Dash::Dashed } else { Dash::Solid })
         });
         let title = format!("Rational approximation over the hemisphere, σ = {SIGMA}");
         self.over_hemisphere(title, curves.collect())
     }
 
-    /// One of them by σ.
+    /// The measure [`RELATIVE`] by σ.
     fn by_sigma(&self) -> Panel {
         let curves = SIGMAS.into_iter().enumerate().map(|(i, sigma)| {
             let key = Key::Sigma(sigma);
@@ -107,7 +107,7 @@ impl Paper {
         Curve::new(key, name, of.map(|at| (at.gamma, 1e2 * at.errors[measure])))
     }
 
-    /// With what the paper states.
+    /// A panel over γ, with the bound that the paper states.
     fn over_hemisphere(&self, title: String, curves: Vec<Curve>) -> Panel {
         let (key, points) = (Key::OTHER, SHAPES.map(|gamma| (gamma, 1e2 * CLAIM)));
         let claim = Curve::new(key, "0.7 %, as the paper has it", points).dashed(Dash::Dotted);
@@ -151,12 +151,12 @@ impl Paper {
     }
 }
 
-/// Neighbours on a ramp of colours differ in this too.
+/// Dashes that distinguish neighbours on a ramp of colours.
 fn alternate(i: usize) -> Dash {
     if i.is_multiple_of(2) { Dash::Solid } else { Dash::Dashed }
 }
 
-/// The curves of one coordinate. What has one shape is the same for all.
+/// The curves over γ or over σ; a method of one shape is constant over γ.
 fn time_curves(of: &[&Timing], by_gamma: bool, scale: f64) -> Vec<Curve> {
     let mut of: Vec<&Timing> =
         of.iter().copied().filter(|time| time.by_gamma == by_gamma).collect();

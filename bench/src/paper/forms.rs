@@ -1,4 +1,4 @@
-//! The forms of masking that are compared, each as the clock runs it alone and as part of a
+//! The computations of G1 that are compared, each as the clock runs it, alone and as part of a
 //! renderer.
 
 use std::hint::black_box;
@@ -21,7 +21,7 @@ use crate::settings::Film;
 /// Makes the line of a picture with this number.
 pub(crate) type Line<'a> = Box<dyn Fn(usize) + 'a>;
 
-/// One form of G1 for one material.
+/// One computation of G1 for one material.
 pub(crate) struct Form<'a> {
     pub(crate) method: Method,
     /// G1 alone.
@@ -53,11 +53,11 @@ impl Stage {
         Form { method, g1: each_value(g1), line: Box::new(line) }
     }
 
-    /// All forms that are defined for a Student-t. Those of the paper are as printed, in double
+    /// All computations for a Student-t lobe. Those of the paper are as printed, in double
     /// precision, except the rational approximation, whose dependence on γ is prepared.
     pub(crate) fn of_shape<'a>(&'a self, set: &Tables, gamma: f64, sigma: f64) -> Vec<Form<'a>> {
         let lobe = set.student_t(sigma, gamma).expect("the general set covers all shapes");
-        // At normal incidence z is infinite, and a term of the printed forms 0 times that.
+        // At normal incidence z is infinite, and a term of the printed formulas is 0 times z.
         let z = move |w: Vec3| {
             let z = f64::from(w.z) / (sigma * f64::from((w.x * w.x + w.y * w.y).sqrt()));
             z.min(f64::from(LARGEST))
@@ -82,7 +82,7 @@ impl Stage {
         all
     }
 
-    /// The table's, of any shape.
+    /// G1 of the table, for any shape.
     pub(crate) fn table<'a>(&'a self, set: &Tables, gamma: f64, sigma: f64) -> Form<'a> {
         let lobe = set.student_t(sigma, gamma).expect("the general set covers all shapes");
         let table = lobe.clone();

@@ -1,6 +1,6 @@
 //! The error of the rational approximation of G1 over the hemisphere of views, after figure 5. The
-//! paper says that it is below 0.7 %; it does not say by which measure, so here are those that come
-//! to mind.
+//! paper states that it is below 0.7 %, but not by which measure, so that usual ones are computed
+//! here.
 
 use microfacet_core::gauss_legendre;
 use microfacet_model::{Shape, printed};
@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::times::{GAMMAS, SIGMAS};
 
-/// What the paper states.
+/// The bound that the paper states.
 pub(crate) const CLAIM: f64 = 0.007;
 
 /// A measure of ΔG1 = approximation − exact; dω is the solid angle of the view.
@@ -37,22 +37,20 @@ pub(crate) const MEASURES: [Measure; 9] = [
     measure("max_relative", "max |ΔG1|/G1"),
 ];
 
-/// The plainest of them: ∫|ΔG1| dω / ∫G1 dω.
+/// The index of ∫|ΔG1| dω / ∫G1 dω.
 pub(crate) const RELATIVE: usize = 1;
 
 /// The measures for one material: a line of `figure-5-integrated.csv`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Integrated {
-    /// The shape.
     pub(crate) gamma: f64,
-    /// The roughness.
     pub(crate) sigma: f64,
     /// By [`MEASURES`].
     pub(crate) errors: [f64; MEASURES.len()],
 }
 
-/// Shapes from the end of the family to 40, where the approximation was made for: evenly in
-/// log(γ − ³⁄₂), and those of the tables by γ.
+/// Shapes from the end of the family to 40, up to which the approximation was made: evenly in log(γ
+/// − ³⁄₂), and those of the tables by γ.
 fn shapes() -> Vec<f64> {
     const COUNT: i32 = 120;
     let (first, last) = (0.01_f64, 38.5_f64);
@@ -98,7 +96,7 @@ fn measures(
     let [mut largest, mut largest_relative] = [0.0_f64; 2];
     for panel in 0..PANELS {
         for (x, weight) in RULE {
-            // z = t/(1 − t) takes both ends into reach: where G1 falls to 0, and where it is 1.
+            // z = t/(1 − t) reaches both ends: where G1 falls to 0, and where it is 1.
             let t = (f64::from(panel) + x) / f64::from(PANELS);
             let z = t / (1.0 - t);
             let dz = weight / f64::from(PANELS) / ((1.0 - t) * (1.0 - t));
@@ -135,24 +133,22 @@ fn measures(
     ]
 }
 
-/// A measure over all materials: how large it gets, and where it keeps below [`CLAIM`].
+/// A measure over all materials: its largest value, and where it stays below [`CLAIM`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Verdict {
     #[serde(flatten)]
     pub(crate) measure: Measure,
-    /// The largest value.
     #[serde(rename = "largest")]
     pub(crate) worst: f64,
-    /// The γ where that is.
+    /// The γ of the largest value.
     pub(crate) gamma: f64,
-    /// The σ where that is; `None` if it is as large at every σ.
+    /// The σ of the largest value; `None` if every σ has it.
     pub(crate) sigma: Option<f64>,
     /// The shapes for which it is below the claim at every σ, as ranges of the shapes looked at.
     #[serde(rename = "gammas_below_claim")]
     pub(crate) below: Vec<[f64; 2]>,
 }
 
-/// Every measure, judged.
 pub(crate) fn verdicts(all: &[Integrated]) -> Vec<Verdict> {
     let verdict = |(measure, &of): (usize, &Measure)| {
         let error = |at: &Integrated| at.errors[measure];
@@ -170,7 +166,7 @@ pub(crate) fn verdicts(all: &[Integrated]) -> Vec<Verdict> {
             is_open = is_below;
         }
         let (gamma, worst, sigma) = (worst.gamma, error(worst), worst.sigma);
-        // What depends on cot θ/σ alone.
+        // A measure that depends on cot θ/σ alone has its largest value at every σ.
         let mut of_shape = all.iter().filter(|at| at.gamma == gamma);
         let is_any = of_shape.all(|at| (error(at) / worst - 1.0).abs() < 1e-6);
         Verdict { measure: of, worst, gamma, sigma: (!is_any).then_some(sigma), below }

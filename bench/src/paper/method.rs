@@ -1,4 +1,4 @@
-//! The methods that are timed: their names, and what they are in drawings.
+//! The methods that are timed, with their names and colours.
 
 use microfacet_report::plot::Key;
 use serde::Serialize;
@@ -54,7 +54,7 @@ impl Method {
         self.parts().1
     }
 
-    /// Whether it has one shape, which stands for all in a comparison.
+    /// Whether the method is for one shape only, and is compared with others at all shapes.
     pub(super) const fn is_reference(self) -> bool {
         matches!(self, Self::Ggx | Self::Beckmann)
     }

@@ -23,7 +23,6 @@ use crate::settings::Settings;
 
 pub(crate) use approximation::Approximation;
 
-/// All that is measured.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Paper {
     times: Vec<times::Timing>,
@@ -33,7 +32,7 @@ pub(crate) struct Paper {
 }
 
 impl Paper {
-    /// Measures everything; `stage` is told what comes next.
+    /// Measures everything; `stage` is called with the name of each stage.
     pub(crate) fn measure(set: &Tables, settings: &Settings, stage: impl Fn(&str)) -> Self {
         stage("figure 4: times of the forms of masking, alone and in a renderer");
         let times = times::times(set, settings);
@@ -45,7 +44,6 @@ impl Paper {
         Self { times, approximation, integrated, compared }
     }
 
-    /// Every file by its name.
     pub(crate) fn files(&self) -> Result<Vec<(&'static str, Vec<u8>)>, Failure> {
         let measures = MEASURES.map(|measure| measure.column);
         let columns = [&["gamma", "sigma"][..], &measures].concat();

@@ -1,5 +1,5 @@
-//! What a form of masking changes in a picture of rough gold, after figure 6: the same renderer and
-//! the same random numbers, with the exact G1 and with another.
+//! What another computation of G1 changes in a picture of rough gold, after figure 6: the same
+//! renderer and the same random numbers, with the exact G1 and with another.
 
 use glam::{DVec3, Vec3};
 use microfacet_model as model;
@@ -16,10 +16,10 @@ use crate::settings::{Film, SIGMA, Settings};
 
 /// The shapes; the roughness is [`SIGMA`].
 pub(super) const SHAPES: [f64; 5] = [1.6, 2.2, 3.0, 10.0, 40.0];
-/// The forms that are compared with the exact one.
+/// The computations of G1 that are compared with the exact one.
 pub(super) const FORMS: [&str; 3] = ["rational, as printed", "rational, at most 1", "table"];
 
-/// The brightest highlight is just not white.
+/// With this exposure the brightest highlight is just below white.
 const EXPOSURE: f64 = 0.8;
 
 /// Radiance by pixel, line by line.
@@ -38,21 +38,21 @@ pub(crate) struct Difference {
     pub(crate) form: &'static str,
     /// Root mean square over pixels and channels, of radiance.
     pub(crate) rmse: f64,
-    /// The same over the mean radiance of the exact picture.
+    /// `rmse` over the mean radiance of the exact picture.
     #[serde(rename = "relative_rmse")]
     pub(crate) relative: f64,
-    /// The same of what is shown, encoded as sRGB, in steps of 1/255.
+    /// The RMSE of the picture encoded as sRGB, in steps of 1/255.
     #[serde(rename = "rmse_steps")]
     pub(crate) steps: f64,
-    /// The largest of a pixel and channel, in such steps.
+    /// The largest difference of a pixel and channel, in steps of 1/255.
     #[serde(rename = "max_steps")]
     pub(crate) most_steps: f64,
-    /// The largest of the channels for each pixel, of radiance.
+    /// The largest difference of radiance over the channels, for each pixel.
     #[serde(skip)]
     pub(crate) pixels: Vec<f64>,
 }
 
-/// A shape: the exact picture, and the others' differences to it.
+/// A shape: the exact picture, and the differences of the others from it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Compared {
     pub(crate) gamma: f64,
@@ -62,7 +62,6 @@ pub(crate) struct Compared {
     pub(crate) differences: Vec<Difference>,
 }
 
-/// Every shape.
 pub(crate) fn compared(set: &Tables, settings: &Settings) -> Vec<Compared> {
     SHAPES.map(|gamma| Compared::new(set, gamma, settings.shown, settings.picture_seed())).into()
 }
@@ -130,7 +129,7 @@ impl Picture {
     }
 }
 
-/// What is shown of a radiance: it is exposed, and encoded as sRGB.
+/// Radiance exposed and encoded as sRGB.
 pub(super) fn srgb(radiance: DVec3) -> DVec3 {
     let shown = |x: f64| microfacet_report::srgb((EXPOSURE * x).clamp(0.0, 1.0));
     DVec3::from(radiance.to_array().map(shown))

@@ -1,10 +1,10 @@
-//! A practical renderer, as small as one can be: a sphere of rough metal in a studio, lit directly,
-//! with the form of masking left open.
+//! A minimal renderer: a sphere of rough metal in a studio, lit directly, with any computation of
+//! G1.
 //!
 //! At a hit it draws one light by visible normals and one towards each lamp, and combines them by
 //! multiple importance sampling (Veach 1997, *Robust Monte Carlo Methods for Light Transport
-//! Simulation*, section 9.2). A sphere does not shadow itself, so nothing is lost but light of
-//! further bounces. G2 = G1(v) G1(l), as Ribardière et al. 2017 (doi:10.1111/cgf.13137) have it.
+//! Simulation*, section 9.2). A sphere does not shadow itself, so that only light of further
+//! bounces is lost. G2 = G1(v) G1(l), as in Ribardière et al. 2017 (doi:10.1111/cgf.13137).
 //!
 //! World coordinates are right-handed, y up. The sphere has radius 1 about the origin.
 
@@ -21,7 +21,7 @@ const ELEVATION: f32 = 0.45;
 /// Half the edge of the picture.
 const REACH: f32 = 1.05;
 
-/// A rough metal whose visible normals are drawn from tables, with a form of G1 of its own.
+/// A rough metal whose visible normals are drawn from tables, with its own computation of G1.
 pub(crate) struct Metal<G> {
     lobe: StudentT,
     g1: G,
@@ -44,14 +44,14 @@ impl<G: Fn(Vec3) -> f32> Metal<G> {
         if !(v.z > 0.0) {
             return Vec3::ZERO;
         }
-        // Normals are drawn with G1 of the tables, whatever form the metal has.
+        // Normals are drawn with G1 of the tables, whatever G1 the metal has.
         let drawn = self.lobe.g1(v);
         let share = (self.g1)(v) / drawn;
         // The estimate at a light and its half vector does not depend on how they were drawn.
         let estimate = |l: Vec3, m: Vec3| {
             let (radiance, of_lamps) = sky.seen(*frame * l);
             let density = self.lobe.d(m) * drawn / (4.0 * v.z);
-            // D may underflow, and 0/0 would be the share of a light that no lamp sends.
+            // D may underflow to 0, and of_lamps/density would be 0/0 without a lamp.
             if !(density > 0.0) {
                 return Vec3::ZERO;
             }
@@ -86,8 +86,8 @@ impl Film {
         self.hit([x as f32 + 0.5, y as f32 + 0.5]).is_some()
     }
 
-    /// A line of pixels, their mean radiance; what is beside the sphere is black. Random numbers
-    /// depend on the pixel and the seed alone, so that two metals get the same.
+    /// The mean radiance of the pixels of a line; black outside the sphere. Random numbers depend
+    /// on the pixel and the seed alone, so that two metals get the same.
     pub(crate) fn line<G: Fn(Vec3) -> f32>(
         self,
         y: usize,
@@ -98,7 +98,7 @@ impl Film {
         let (sin, cos) = ELEVATION.sin_cos();
         let camera = Mat3::from_cols(Vec3::X, Vec3::new(0.0, cos, -sin), Vec3::new(0.0, sin, cos));
         (0..self.edge).map(move |x| {
-            // Seeds of neighbours far apart, by the golden ratio.
+            // The golden ratio spreads the seeds of neighbouring pixels.
             let pixel = (y * self.edge + x) as u32 ^ seed.rotate_left(16);
             let pixel = pixel.wrapping_mul(0x9e37_79b9);
             let sample = |index: usize| {
@@ -125,8 +125,8 @@ mod tests {
 
     use super::*;
 
-    /// Parallel light meets the disc of a sphere evenly, so that in a white furnace the mean over
-    /// it is that of the albedo by the cosine, whether the sky is white or a lamp all around.
+    /// A parallel camera sees the disc of a sphere evenly, so that in a white furnace the mean over
+    /// the disc is the cosine-weighted average of the albedo, whether the sky is white or a lamp.
     #[test]
     fn a_mirror_in_a_white_furnace_shows_its_average_albedo() {
         let (tables, film) = (Tables::embedded(), Film { edge: 40, samples: 64 });
@@ -149,8 +149,8 @@ mod tests {
         }
     }
 
-    /// What a form of masking takes from a light, it takes from the picture: half of both G1 leaves
-    /// a quarter, though normals are drawn as before.
+    /// Radiance is proportional to both G1: half of each leaves a quarter, while normals are drawn
+    /// as before.
     #[test]
     fn a_picture_follows_its_own_form_of_masking() {
         let (tables, film, sky) =

@@ -8,7 +8,6 @@ use crate::rows::Quantity;
 use crate::settings::SIGMA;
 
 impl Paper {
-    /// All of it.
     pub(crate) fn text(&self) -> String {
         [self.times_text(), self.integrated_text(), self.compared_text()].join("\n")
     }
@@ -37,7 +36,7 @@ impl Paper {
         .join("\n")
     }
 
-    /// Nanoseconds of a picture. A closed form has one shape, which serves for all.
+    /// Nanoseconds of a picture of this method and shape, if it was timed.
     fn picture(&self, method: Method, gamma: f64) -> Option<f64> {
         let of = self.times.iter().filter(|time| {
             time.quantity == Quantity::Picture && time.by_gamma && time.method == method
@@ -45,8 +44,7 @@ impl Paper {
         of.clone().find(|time| time.gamma == gamma).map(|time| time.ns)
     }
 
-    /// A table of methods over γ; what is measured at one shape alone stands in its column, and
-    /// Beckmann's in a last one.
+    /// A table of methods over γ, with Beckmann in the last column.
     fn by_gamma(
         &self,
         head: &str,
@@ -109,7 +107,6 @@ impl Paper {
         [text, by_measure, by_sigma].join("\n")
     }
 
-    /// Each form of each shape.
     fn compared_text(&self) -> String {
         let mut text = format!(
             "figure 6, rough gold, sigma {SIGMA}: differences to the picture with the exact G1, in \

@@ -1,5 +1,5 @@
-//! The time by γ and by σ of each form of masking, alone and in a renderer, after figure 4; and of
-//! visible normals, which the paper does not draw.
+//! The time by γ and by σ of each computation of G1, alone and in a renderer, after figure 4; and
+//! of visible normals, which figure 4 does not show.
 
 use std::cell::RefCell;
 
@@ -28,16 +28,14 @@ pub(super) const SIGMAS: [f64; 8] = [0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0];
 /// The time of one method for one material: a line of `figure-4.csv`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Timing {
-    /// What is computed.
     pub(crate) quantity: Quantity,
     /// Whether this is a point over γ (else over σ).
     #[serde(rename = "by", serialize_with = "coordinate")]
     pub(crate) by_gamma: bool,
     pub(super) method: Method,
-    /// Its shape; of a closed form that has only one, that one.
+    /// The shape; of a closed form for one shape, that shape.
     #[serde(serialize_with = "shape")]
     pub(crate) gamma: f64,
-    /// Its roughness.
     pub(crate) sigma: f64,
     /// Nanoseconds a call; of a picture, for all of it.
     pub(crate) ns: f64,
@@ -70,7 +68,7 @@ pub(crate) fn times(set: &Tables, settings: &Settings) -> Vec<Timing> {
     let inputs = Inputs::new(settings.seed, settings.calls);
     let mut runs: Vec<Calls> = forms.iter().map(|(_, form)| values(&form.g1, &inputs)).collect();
     runs.extend(draws.iter().map(|(_, (_, draw))| normals(draw, &inputs)));
-    // There are so many that fewer rounds must suffice.
+    // An eighth of the rounds, since there are many runs.
     let times = clock::medians(&mut runs, settings.rounds.div_ceil(8), settings.calls);
     let (of_forms, of_draws) = times.split_at(forms.len());
     let timing = |quantity, (by_gamma, gamma, sigma), method, &ns: &f64| Timing {

@@ -65,7 +65,7 @@ pub(super) fn slopes(cot: f32, u: [f32; 2]) -> [f32; 2] {
     slopes_of(cot, erf(cot), u)
 }
 
-/// The same, given the error function of `cot`.
+/// [`slopes`], given the error function of `cot`.
 #[inline(always)]
 pub(super) fn slopes_of(cot: f32, [erf, gauss]: [f32; 2], u: [f32; 2]) -> [f32; 2] {
     let tan = 1.0 / cot;
@@ -143,8 +143,8 @@ pub(crate) fn g1(sigma: f32, w: Vec3) -> f32 {
     2.0 * a / (a * (1.0 + erf) + SQRT_PI_INV * gauss)
 }
 
-/// Its rational fit (Walter et al. 2007, eq. 27), as a fraction of σ sin θ and cos θ. The fit is 1
-/// at a = 1.6, and G1 is taken as 1 beyond: clamping z and the result avoids a branch.
+/// The rational fit of G1 (Walter et al. 2007, eq. 27), as a fraction of σ sin θ and cos θ. The fit
+/// is 1 at a = 1.6, and G1 is taken as 1 beyond: clamping z and the result avoids a branch.
 #[inline(always)]
 pub(crate) fn g1_rational(sigma: f32, w: Vec3) -> f32 {
     let rho = radius(sigma, w);

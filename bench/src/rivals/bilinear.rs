@@ -18,7 +18,7 @@ pub(crate) struct Bilinear {
     /// Distances from the nearer end: rows by view, both halves of u₁.
     along: Vec<f32>,
     rows: usize,
-    /// The place of a view among them.
+    /// The coordinate of a view, in rows.
     lines: Lines,
     numbers: usize,
     across: Vec<f32>,

@@ -19,7 +19,7 @@ pub(crate) trait Area {
     fn area(&self, view: View) -> f32;
 }
 
-/// What the CDFs of visible normals need as well.
+/// The functions that CDFs of visible normals need in addition.
 pub(crate) trait Tails: Area {
     type Along: Tail;
     type Across: Tail;

@@ -21,7 +21,8 @@ macro_rules! in_precision {
                 Vector::new(sigma * m.x, sigma * m.y, m.z).normalize()
             }
 
-            /// The same for speed: the stretched view is not normalised, only the half vector.
+            /// The same sampler, faster: the stretched view is not normalised, only the half
+            /// vector.
             #[inline(always)]
             pub(crate) fn caps(sigma: $float, v: Vector, u: [$float; 2]) -> Vector {
                 let w = Vector::new(sigma * v.x, sigma * v.y, v.z);

@@ -9,7 +9,7 @@ use super::tail::{Tail, whole};
 /// A lobe with its coefficients prepared.
 pub(crate) struct Lobe<F> {
     sigma: f32,
-    /// √(γ−1): slopes over σ and this are those of the lobe's own space.
+    /// √(γ−1): a slope divided by σ and by this is a slope of the lobe's own space.
     root: f32,
     /// σ√(γ−1).
     stretch: f32,
@@ -25,7 +25,7 @@ pub(crate) struct Lobe<F> {
     series: [f32; 2],
 }
 
-/// Tolerance of both CDFs, the same as that of the other rival that iterates.
+/// Tolerance of both CDFs, the same as that of the iteration for Beckmann.
 const TOLERANCE: f32 = 1e-5;
 
 /// The last step of an inversion ends within one tolerance if the value is below [`CLOSE`]
@@ -89,7 +89,7 @@ impl<F: Area> Lobe<F> {
 }
 
 impl<F: Tails> Lobe<F> {
-    /// The visible normal at both numbers, which it follows in the same sense as the tables.
+    /// The visible normal at both random numbers, in the same order as that of the tables.
     #[inline(always)]
     pub(crate) fn sample(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
         let horizontal = (v.x * v.x + v.y * v.y).sqrt();
@@ -131,7 +131,7 @@ impl<F: Tails> Lobe<F> {
         })
     }
 
-    /// Sine and cosine of the tilt across it.
+    /// Sine and cosine of the tilt across the plane of incidence.
     #[inline(always)]
     fn across(&self, u: f32) -> [f32; 2] {
         let target = u.min(1.0 - u);

@@ -48,7 +48,7 @@ impl Rational {
         }
     }
 
-    /// As printed, above 1 in places, but with one denominator.
+    /// As printed, above 1 for some views, but with one denominator.
     #[inline(always)]
     pub(crate) fn g1(&self, w: Vec3) -> f32 {
         let z = (w.z / (self.sigma * (w.x * w.x + w.y * w.y).sqrt())).min(LARGEST);

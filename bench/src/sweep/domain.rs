@@ -72,9 +72,9 @@ impl Views {
         Self::new("straight down", |_| Some(Vec3::Z))
     }
 
-    /// Views above the surface, but below the horizon of a lobe that leans away, as far as there
-    /// are any: of all depths; and at depths of 0.8 to 1 unit slopes, where the least is saved: too
-    /// deep for a table, not deep enough for an expansion.
+    /// Views above the surface, but below the horizon of a lobe that leans away, if there are any:
+    /// at all depths; and at depths of 0.8 to 1 unit slopes, which save the least time: too deep
+    /// for a table, not deep enough for an expansion.
     pub(crate) fn below_lobe(skew: Skew) -> impl Iterator<Item = Self> {
         let below = move |[a, b]: [f32; 2]| {
             // The lobe's horizon is at the slope −(x, y)·(cos φ, sin φ).
@@ -109,7 +109,7 @@ impl Views {
 pub(crate) enum Numbers {
     /// Uniform in [0, 1)².
     Random,
-    /// The same, but in one pair of twenty one of the two is 0 or 1.
+    /// Uniform, but in one pair of twenty one of the two is 0 or 1.
     SomeAtEnds,
     /// Both are 0 or 1.
     AllAtEnds,

@@ -11,13 +11,11 @@ use microfacet_sampler::{Masking, MicrofacetDistribution};
 /// The arguments of one call.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Case {
-    /// The view.
     v: Vec3,
-    /// The random numbers.
     u: [f32; 2],
-    /// The normal that the lobe draws from them.
+    /// The normal that the lobe draws for `v` and `u`.
     m: Vec3,
-    /// The light that is reflected off it.
+    /// `v` reflected at `m`.
     l: Vec3,
 }
 
@@ -31,7 +29,6 @@ pub(super) struct Cases {
 }
 
 impl Cases {
-    /// Of these views and numbers, seen by a lobe.
     pub(super) fn new(lobe: &impl MicrofacetDistribution, v: &[Vec3], u: &[[f32; 2]]) -> Self {
         let case = |(&v, &u): (&Vec3, &[f32; 2])| {
             let m = lobe.sample_visible_normal(v, u);
@@ -49,7 +46,6 @@ impl Cases {
 
 /// A public function of a lobe.
 pub(super) struct Function<L> {
-    /// Its name.
     pub(super) name: &'static str,
     /// Whether its arguments depend on the random numbers, as normals and lights do.
     pub(super) reads_numbers: bool,
@@ -73,7 +69,7 @@ fn each<L, R>(
     Function { name, reads_numbers, run: Box::new(run) }
 }
 
-/// Those of every lobe.
+/// The functions of every lobe.
 pub(super) fn common<L: MicrofacetDistribution + 'static>() -> Vec<Function<L>> {
     const G2: Masking = Masking::HeightCorrelated;
     vec![
@@ -104,7 +100,7 @@ pub(super) fn common<L: MicrofacetDistribution + 'static>() -> Vec<Function<L>> 
     ]
 }
 
-/// Those of a Student-t bounded to reflections.
+/// The functions of a Student-t lobe bounded to reflections.
 pub(super) fn of_bounded() -> Vec<Function<Bounded>> {
     vec![
         each("at, drawn once", true, |bounded: &Bounded, at| bounded.at(at.v).sample(at.u)),

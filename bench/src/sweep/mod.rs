@@ -27,14 +27,12 @@ use crate::settings::Settings;
 pub(crate) struct Cell {
     /// The lobe and its function.
     pub(crate) function: String,
-    /// The shape.
     #[serde(serialize_with = "shape")]
     pub(crate) gamma: f64,
     /// Roughness along x and y.
     pub(crate) sigma: [f64; 2],
     /// Turns of an ellipsoid about x, y and z, in radians.
     pub(crate) turns: [f64; 3],
-    /// The class of views.
     pub(crate) views: &'static str,
     /// The class of random numbers; "-" where the function does not depend on them.
     pub(crate) numbers: &'static str,
@@ -43,7 +41,7 @@ pub(crate) struct Cell {
 }
 
 impl Cell {
-    /// The names of its numbers and texts.
+    /// The columns of `sweep.csv`.
     pub(crate) const COLUMNS: [&str; 10] = [
         "function", "gamma", "sigma_x", "sigma_y", "turn_x", "turn_y", "turn_z", "views",
         "numbers", "ns",
@@ -63,7 +61,6 @@ impl Cell {
 /// The class of numbers of a function that does not depend on them.
 const NONE: &str = "-";
 
-/// Times all cells.
 pub(crate) fn cells(set: &Tables, settings: &Settings) -> Vec<Cell> {
     let mut all = pass(set, settings);
     for (cell, again) in all.iter_mut().zip(pass(set, settings)) {
@@ -116,8 +113,8 @@ impl Sweep {
         Self { seed, batches, calls, views, numbers, cells: Vec::new() }
     }
 
-    /// Times the functions of a subject, over all classes and more classes of views; the lobe draws
-    /// the normals among their arguments.
+    /// Times functions of `subject` over all classes, and over `more` classes of views; `lobe`
+    /// draws the normals of their arguments.
     fn lobe<L>(
         &mut self,
         lobe: &impl MicrofacetDistribution,

@@ -1,4 +1,4 @@
-//! What a sweep says of each function.
+//! The summary of a sweep for each function.
 
 use serde::Serialize;
 
@@ -8,7 +8,6 @@ use super::Cell;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Summary {
     pub(crate) function: String,
-    /// The number of cells.
     pub(crate) cells: usize,
     /// The median of the cells with random views and numbers.
     pub(crate) common_ns: f64,
@@ -22,7 +21,6 @@ pub(crate) struct Summary {
 }
 
 impl Summary {
-    /// Of all cells of one function.
     fn new(mut cells: Vec<&Cell>) -> Self {
         cells.sort_by(|a, b| a.ns.total_cmp(&b.ns));
         let common: Vec<&Cell> = cells.iter().copied().filter(|cell| cell.is_common()).collect();
@@ -56,8 +54,7 @@ pub(crate) fn summaries(cells: &[Cell]) -> Vec<Summary> {
     by_function.into_iter().map(Summary::new).collect()
 }
 
-/// The least time that so many per cent of the cells, which are in order, do not exceed; NaN of
-/// none.
+/// The least time that `percent` per cent of the sorted cells do not exceed; NaN without cells.
 fn quantile(cells: &[&Cell], percent: usize) -> f64 {
     match cells.len() {
         0 => f64::NAN,

@@ -1,4 +1,4 @@
-//! What the exported functions return, held against the crate's.
+//! Compares the results of exported functions with the crate's.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use microfacet_sampler::{Ggx, Lobe, Masking, MicrofacetDistribution, Tables};
 use crate::lookup::{Answer, Point};
 use crate::points::Group;
 
-/// What may differ.
+/// Limits of the differences.
 pub struct Limits {
     /// Masking, weights and albedos.
     pub share: f64,
@@ -18,43 +18,44 @@ pub struct Limits {
     pub normal: f64,
     /// Normals of σ above [`ROUGH`].
     pub rough: Rough,
-    /// Normals of σ up to there, γ < 1.8 and views within 1e-6 of the horizon; and in units of σ
-    /// those of all views of rougher lobes of such γ. Next to all is in the heavy part there. Its
-    /// smallest slopes are the root of 1 less a share of the light that is next to 1, of which
-    /// single precision has few digits.
+    /// Normals for γ < 1.8: of views within 1e-6 of the horizon, and of all views of lobes with σ
+    /// above [`ROUGH`], in units of σ. There nearly all normals are in the heavy part, whose
+    /// smallest slopes are the root of 1 less a share of the light close to 1, of which single
+    /// precision has few digits.
     pub heavy: f64,
     /// Averages of albedos.
     pub average: f64,
-    /// Densities in relation to themselves: and for each unit of |ln(D σx σy)|.
+    /// Relative differences of densities: a constant, and one for each unit of |ln(D σx σy)|.
     pub density: [f64; 2],
-    /// Albedos of γ below [`SLOW`], closer to the horizon than 1e-6, and than 1e-20: they approach
-    /// their limit with a power of the cosine of 0.002 or so, by which single precision
-    /// extrapolates from two albedos that differ in their last digits, there and in the crate.
+    /// Albedos for γ below [`SLOW`] and cosines below 1e-6, and below 1e-20. Albedos approach their
+    /// limit with a power of about 0.002 of the cosine, by which both sides extrapolate in single
+    /// precision from two albedos that differ in their last digits.
     pub extrapolated: [f64; 2],
-    /// Whether arguments that are NaN have to give numbers; else they are left out.
+    /// Whether NaN arguments must give numbers; otherwise points with NaN are left out.
     pub of_nan: bool,
     /// The largest Λ, that of the horizon.
     pub lambda: f32,
 }
 
-/// How normals of rough lobes are compared, which grazing views turn by the last digits of a slope.
+/// How normals of rough lobes are compared: at grazing views the last digits of a slope turn them.
 pub enum Rough {
     /// By their coordinates, with this limit: for the same operations in the same order.
     Coordinates(f64),
     /// With the limits of other normals, by their coordinates or by those of the normals of σ = 1
-    /// that they are stretched from, whichever are closer: a flat normal is turned much by the last
-    /// digits of its slope, and the slope of a steep one changes much by those of its coordinates.
+    /// that they are stretched from, where they are closer: the last digits of its slope turn a
+    /// flat normal much, and the last digits of its coordinates change the slope of a steep one
+    /// much.
     Stretched,
 }
 
 const ROUGH: f32 = 10.0;
 const SLOW: f64 = 1.6;
 const HEAVY: f64 = 1.8;
-/// Below it single precision has not all its digits.
+/// Below it single precision loses digits.
 pub(crate) const SMALLEST: f64 = 1.2e-38;
 
 impl Limits {
-    /// What a density may differ by in relation to itself.
+    /// The relative difference that is allowed for a density.
     pub(crate) fn density(&self, d: f64, sigma: [f32; 2]) -> f64 {
         let log = (d.max(1e-38) * f64::from(sigma[0]) * f64::from(sigma[1])).ln().abs();
         self.density[0] + self.density[1] * log
@@ -81,7 +82,7 @@ impl<'a> Worst<'a> {
         self.seen.values().all(|(share, ..)| *share <= 1.0)
     }
 
-    /// Compares what a language says of a group of points of one shape; returns how many of them.
+    /// Compares a language's answers at points of one shape; returns how many were compared.
     pub(crate) fn group(
         &mut self,
         tables: &Tables,
@@ -112,7 +113,7 @@ impl<'a> Worst<'a> {
     }
 }
 
-/// A point with what a language says of it.
+/// A point with the answer of a language.
 struct Case<'a> {
     limits: &'a Limits,
     seen: &'a mut BTreeMap<&'static str, (f64, f64, String)>,
@@ -122,8 +123,8 @@ struct Case<'a> {
     answer: &'a Answer,
 }
 
-/// What the crate says of the albedos of one roughness, under both forms of masking: those of the
-/// stand-in, within the range of the tables. Nothing of a mirror, which σ ≤ 0 is to exports.
+/// The crate's albedos of one roughness, for both forms of masking: those of the stand-in, with σ
+/// clamped to the range of the tables. `None` for σ ≤ 0, which exports take for a mirror.
 fn albedos(tables: &Tables, sigma: [f32; 2], gamma: f64) -> Option<[Albedo; 2]> {
     if !sigma.iter().all(|sigma| *sigma > 0.0) {
         return None;
@@ -133,13 +134,13 @@ fn albedos(tables: &Tables, sigma: [f32; 2], gamma: f64) -> Option<[Albedo; 2]> 
     Some(Masking::ALL.map(|masking| tables.albedo(sigma, gamma, masking).unwrap()))
 }
 
-/// The roughness as exports take it.
+/// The roughness that exports use.
 fn clamped(sigma: [f32; 2]) -> [f32; 2] {
     // NaN becomes the smallest.
     sigma.map(|sigma| if sigma > 1e-8 { sigma.min(1e6) } else { 1e-8 })
 }
 
-/// The lobe whose random numbers the export has: for GGX the closed forms.
+/// The lobe that draws normals as the export does: for GGX by closed forms.
 fn lobe(tables: &Tables, sigma: [f32; 2], gamma: f64) -> Lobe {
     let sigma = clamped(sigma).map(f64::from);
     if gamma == 2.0 {
@@ -159,8 +160,8 @@ fn far(a: f32, b: f32) -> f64 {
     (f64::from(a) - f64::from(b)).abs()
 }
 
-/// Whether a direction has NaN, or a view is neither null nor of length 1: then results are only
-/// to be in their ranges.
+/// Whether a direction has NaN, or a view is neither null nor of length 1: then results must only
+/// be in their ranges.
 fn is_odd(point: &Point) -> bool {
     let has_nan = [point.v, point.l, point.m].as_flattened().iter().any(|x| x.is_nan());
     let length = point.v.iter().map(|&x| f64::from(x).powi(2)).sum::<f64>().sqrt();
@@ -175,8 +176,7 @@ fn unstretched([x, y, z]: [f32; 3], [sigma_x, sigma_y]: [f32; 2]) -> [f32; 3] {
     m.map(|x| (x / length) as f32)
 }
 
-/// How far apart two directions are by a coordinate. NaN is worse than any number; a maximum would
-/// pass over it.
+/// The largest difference of a coordinate; ∞ for NaN, which a maximum would ignore.
 fn apart(a: [f32; 3], b: [f32; 3]) -> f64 {
     let apart = [far(a[0], b[0]), far(a[1], b[1]), far(a[2], b[2])];
     let most = apart.into_iter().fold(0.0, f64::max);
@@ -189,7 +189,6 @@ fn in_order(Moments { scale, bias, f82 }: Moments) -> [f32; 3] {
 
 impl Case<'_> {
     fn see(&mut self, name: &'static str, difference: f64, allowed: f64) {
-        // NaN is worse than any number.
         let difference = if difference.is_nan() { f64::INFINITY } else { difference };
         let entry = self.seen.entry(name).or_default();
         if difference / allowed > entry.0 || entry.2.is_empty() {
@@ -199,12 +198,12 @@ impl Case<'_> {
         }
     }
 
-    /// What holds or does not.
+    /// A condition, as a difference of 0 or ∞.
     fn holds(&mut self, name: &'static str, holds: bool) {
         self.see(name, if holds { 0.0 } else { f64::INFINITY }, 1.0);
     }
 
-    /// Whether every number is one, and what must vanish does.
+    /// Results are numbers, and those that must vanish are 0.
     fn numbers(&mut self) {
         let (point, answer) = (self.point, self.answer);
         let mut all = bytemuck::cast_slice::<_, f32>(std::slice::from_ref(answer)).iter();
@@ -315,7 +314,7 @@ impl Case<'_> {
             let [v, l, average] = [v, l, average].map(f64::from);
             let both = v * l * std::f64::consts::FRAC_1_PI;
             let difference = (f64::from(answer.compensation[k]) - both / average).abs();
-            // As much as what it is made of may differ. An average of next to nothing says little.
+            // The limit follows from those of the factors. An average close to 0 has few digits.
             if average > 1e-3 {
                 let allowed = (both * limits.average / average + 2.0 * limits.share) / average;
                 self.see("compensation", difference, allowed);

@@ -1,5 +1,5 @@
 //! Compares the functions of exported shapes with the Rust crate: at random points, at corners, and
-//! with the rows of `docs/reference.csv`. What runs them is the client's.
+//! with the rows of `docs/reference.csv`. Clients run the functions.
 
 mod compare;
 mod lookup;
@@ -13,9 +13,10 @@ pub use lookup::{Answer, Point};
 
 use compare::Worst;
 
-/// What languages say of the same points of a shape, which is one of those compared, by its number.
+/// Exported functions in one or several languages, for the shapes that are compared, by their
+/// index.
 pub trait Foreign {
-    /// Answers by each language.
+    /// The answers of each language at points of a shape.
     fn answers(&mut self, shape: usize, points: &[Point]) -> Vec<(&'static str, Vec<Answer>)>;
 }
 

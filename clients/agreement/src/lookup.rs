@@ -1,8 +1,8 @@
-//! What is asked and answered, in the layout of C and of a buffer of numbers alike.
+//! Arguments and results of lookups, in the layout of C, which is that of a buffer of numbers.
 
 use bytemuck::{Pod, Zeroable};
 
-/// What lookups take.
+/// The arguments of lookups.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Point {
@@ -13,7 +13,7 @@ pub struct Point {
     pub u: [f32; 2],
 }
 
-/// What they return; pairs are by form of masking.
+/// The results of lookups; pairs are by form of masking.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Answer {

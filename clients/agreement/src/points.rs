@@ -1,4 +1,4 @@
-//! Where the two are compared: random points of every material, and corners by name.
+//! The points of comparison: random points of every material, and corners.
 
 use glam::Vec3;
 use rand::rngs::StdRng;
@@ -23,7 +23,7 @@ pub fn random(count: usize, seed: u64) -> Vec<Group> {
     let mut between = move |low: f32, high: f32| low + (high - low) * rng.random::<f32>();
     let mut groups = Vec::new();
     for i in 0..count.div_ceil(EACH) {
-        // Every fourth roughness from all that there are, the others of common materials.
+        // Every fourth roughness is from the whole range, the others are of common materials.
         let ends = if i % 4 == 0 { [-8.0, 6.0] } else { [-3.0, 0.5] };
         let mut sigma = || 10.0_f32.powf(between(ends[0], ends[1]));
         let (x, y) = (sigma(), sigma());
@@ -54,7 +54,7 @@ pub fn random(count: usize, seed: u64) -> Vec<Group> {
     groups
 }
 
-/// All combinations of what is special of roughnesses, directions and numbers.
+/// All combinations of special roughnesses, views and pairs of numbers.
 pub fn corners() -> Vec<Group> {
     const NAN: f32 = f32::NAN;
     let sigmas = [
@@ -66,7 +66,7 @@ pub fn corners() -> Vec<Group> {
         [0.3, 0.3],
         [0.1, 2.0],
         [3.0, 3.0],
-        // What is taken at an end, or for a mirror.
+        // Clamped to an end of the range, or taken for a mirror.
         [0.0, 0.3],
         [-1.0, -1.0],
         [1e-30, 1e-30],

@@ -8,8 +8,8 @@ use crate::{Foreign, Limits};
 
 /// Compares every row whose shape is exported; returns whether all agree.
 ///
-/// GGX is exported in closed form, so its rows are held against the exact columns, and its normals,
-/// which are drawn in another way than from tables, are not compared.
+/// GGX is exported in closed form: its rows are compared with the exact columns, and its normals,
+/// which are not drawn from tables, not at all.
 pub(crate) fn compare(
     foreign: &mut impl Foreign,
     limits: &Limits,
@@ -52,7 +52,6 @@ pub(crate) fn compare(
                     None if difference <= SMALLEST => 0.0,
                     None => difference / want / density(),
                 };
-                // NaN is worse than any number.
                 let share = if share.is_nan() { f64::INFINITY } else { share };
                 cells += 1;
                 if share > worst.0 {
@@ -70,8 +69,8 @@ pub(crate) fn compare(
     share <= 1.0 && cells > 0 && skipped == 0
 }
 
-/// Columns with what answers say of them, and what they may differ by; densities have no limit of
-/// their own.
+/// Columns with the values of an answer and their limits; `None` for densities, whose limit is
+/// relative.
 fn columns(
     answer: &Answer,
     masking: usize,

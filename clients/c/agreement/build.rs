@@ -31,14 +31,14 @@ fn main() {
     let gammas: Vec<String> = names.iter().map(|name| name.replace('p', ".")).collect();
     fs::write(out.join("gammas.txt"), gammas.join("\n")).unwrap();
 
-    // As a careful user would: optimised, without relaxed arithmetic, every warning an error.
+    // Optimised, without relaxed arithmetic, every warning an error.
     for (cpp, standard, prefix) in [(false, "c99", "c_"), (true, "c++11", "cpp_")] {
         let mut build = cc::Build::new();
         build.cpp(cpp).opt_level(2).std(standard).warnings_into_errors(true).extra_warnings(true);
         build.flag_if_supported("-Wpedantic").flag_if_supported("-Wconversion");
         if cpp {
-            // The header is C and C++, so that one file is compiled as both; by GCC or Clang, as
-            // of the name's ending.
+            // One file is compiled as C and as C++; GCC and Clang would take the language from its
+            // name.
             build.flag("-xc++");
         }
         build.define("PREFIX", prefix).includes([&folder, &out]).file("src/lookups.c");

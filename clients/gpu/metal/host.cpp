@@ -1,5 +1,5 @@
 // Runs the kernel that comes with an export for Metal, as C++ of the host: takes student_t.bin,
-// reflects the view of `clients/c/lookup.c`, and prints what that prints. With TEXTURES defined the
+// reflects the view of `clients/c/lookup.c`, and prints the same lines. With TEXTURES defined the
 // tables are a texture.
 #include <cstdio>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-//! Runs programs for compute.
+//! Runs compute shaders.
 
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{BindGroupEntry, BindingResource, BufferUsages};
@@ -9,11 +9,11 @@ use crate::export::Tables;
 pub struct Gpu {
     device: wgpu::Device,
     queue: wgpu::Queue,
-    /// What it says of itself.
+    /// Names of the device and of its driver.
     pub name: String,
 }
 
-/// Tables on the device, of one kind or the other.
+/// Tables on the device: a buffer, a texture, or a texture with a filter.
 pub enum Bound {
     Buffer(wgpu::Buffer),
     Texture(wgpu::TextureView),
@@ -27,7 +27,7 @@ pub struct Program {
 }
 
 impl Gpu {
-    /// The software driver of Vulkan, or any hardware if so asked.
+    /// The software driver of Vulkan, or any hardware if `hardware` is true.
     pub fn new(hardware: bool) -> Result<Self, String> {
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
         descriptor.backends = wgpu::Backends::VULKAN;
@@ -75,7 +75,7 @@ impl Gpu {
         Bound::Filtered(self.view(size, format, texels), sampler)
     }
 
-    /// A texture of these texels; no depth is of one in two dimensions.
+    /// A texture of these texels; a depth of 0 makes it two-dimensional.
     fn view(
         &self,
         [width, height, depth]: [u32; 3],
@@ -116,8 +116,8 @@ impl Gpu {
         Program { pipeline, tables }
     }
 
-    /// What a program writes to binding 2, of so many bytes, from `input` in binding 1 and, where
-    /// it has any, `uniform` in binding 3; a filter is in binding 4.
+    /// Runs a program, and returns the `output` bytes that it writes to binding 2. `input` is in
+    /// binding 1, `uniform`, if any, in binding 3, and a filter in binding 4.
     pub fn run(
         &self,
         program: &Program,

@@ -11,7 +11,6 @@ pub struct Export {
     pub module: String,
     /// The program that came with them.
     pub sample: String,
-    /// The tables.
     pub tables: Tables,
     description: Value,
 }
@@ -24,7 +23,6 @@ pub struct Tables {
 }
 
 impl Export {
-    /// From a folder.
     pub fn read(folder: &Path) -> Self {
         let file = |name: &str| folder.join(name);
         let text = |name| fs::read_to_string(file(name)).expect(name);
@@ -40,7 +38,7 @@ impl Export {
         Self { module, sample, tables, description }
     }
 
-    /// The shapes in it, by γ, with what functions call each.
+    /// The exported shapes: γ, and the offset by which functions identify each.
     fn shapes(&self) -> impl Iterator<Item = (f64, u32)> {
         let shapes = self.description["shapes"].as_object().expect("shapes");
         shapes.iter().map(|(gamma, shape)| {
@@ -49,14 +47,14 @@ impl Export {
         })
     }
 
-    /// The shapes in it, ascending.
+    /// The exported γ, ascending.
     pub fn gammas(&self) -> Vec<f64> {
         let mut gammas: Vec<f64> = self.shapes().map(|(gamma, _)| gamma).collect();
         gammas.sort_by(f64::total_cmp);
         gammas
     }
 
-    /// What functions call a shape.
+    /// The offset by which functions identify a shape.
     pub fn offset(&self, gamma: f64) -> u32 {
         let found = self.shapes().find(|(other, _)| *other == gamma);
         found.unwrap_or_else(|| panic!("gamma {gamma} was not exported")).1

@@ -1,4 +1,4 @@
-//! Albedos as textures, read by the filter of the device with the line that comes with them.
+//! Albedos as textures, read by the device's filter with the line of WGSL in their description.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::device::Gpu;
 
-/// What the crate's own albedos may err by: for σ ≥ 0.01 and cos θ ≥ 0.02, and elsewhere.
+/// Largest errors of the crate's own albedos: for σ ≥ 0.01 and cos θ ≥ 0.02, and elsewhere.
 const CRATE: [f64; 2] = [2e-4, 1.3e-3];
 /// Points of each texture.
 const POINTS: usize = 100_000;

@@ -2,8 +2,8 @@
 //! sample that comes with the export, reads textures by the device's filter, and renders a sphere
 //! that must be that of the Rust BSDF.
 //!
-//! `clients/gpu/run` exports the shapes and starts it. Exit status 1 if something differs by more
-//! than is allowed.
+//! `clients/gpu/run` exports the shapes and starts this program. Exit status 1 if something differs
+//! by more than is allowed.
 
 mod device;
 mod export;
@@ -18,7 +18,7 @@ use device::{Gpu, Program};
 use export::Export;
 use student_t_agreement::{Answer, Foreign, Limits, Point, Rough, agree};
 
-/// What the page of exports promises.
+/// The limits that the documentation of exports states.
 const LIMITS: Limits = Limits {
     share: 1e-5,
     normal: 1e-4,

@@ -29,7 +29,7 @@ struct Answer {
     masking: f32,
 }
 
-/// Runs it at a few views of each shape, in one call; returns whether the crate says the same.
+/// Runs the program at a few views of each shape, in one call; returns whether the crate agrees.
 pub fn runs(gpu: &Gpu, export: &Export) -> bool {
     let tables = Tables::embedded();
     let (sigma, gammas) = ([0.2_f32, 0.6], [1.65, 3.0]);

@@ -31,7 +31,7 @@ struct Scene {
 const GAMMA: f64 = 3.0;
 const ALLOWED: u8 = 2;
 
-/// Renders both, writes that of the shader, and returns whether they agree.
+/// Renders both pictures, writes that of the shader, and returns whether they agree.
 pub fn agrees(gpu: &Gpu, export: &Export, path: &Path) -> bool {
     let scene = Scene {
         light: Vec3::new(0.5, 0.6, 0.62).normalize().into(),
@@ -66,7 +66,7 @@ pub fn agrees(gpu: &Gpu, export: &Export, path: &Path) -> bool {
     worst <= ALLOWED && (20.0..235.0).contains(&mean)
 }
 
-/// As a picture of sRGB holds it.
+/// A number as a byte of sRGB.
 fn byte(x: f32) -> u8 {
     let encoded = if x <= 0.0031308 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
     (255.0 * encoded.clamp(0.0, 1.0)).round() as u8

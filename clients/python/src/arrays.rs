@@ -15,17 +15,17 @@ use pyo3::prelude::*;
 use pyo3::types::{PySlice, PyTuple};
 use rayon::prelude::*;
 
-/// What Python passes, and what it is given back.
+/// An object of Python: an argument or a result.
 pub(crate) type Any<'py> = Bound<'py, PyAny>;
 
 pub(crate) trait Number: Element + Copy + Default + Into<f64> + Send + Sync {}
 
 impl<T: Element + Copy + Default + Into<f64> + Send + Sync> Number for T {}
 
-/// Items that one call of a function is given, so that it may work on several at once.
+/// Items for one call of a function, which may work on several at once.
 const CHUNK: usize = 1024;
 
-/// How long a function takes for an item, which decides how often an interrupt is looked for.
+/// How long a function takes for an item, which decides how often interrupts are checked.
 #[derive(Clone, Copy)]
 pub(crate) enum Cost {
     /// Nanoseconds.
@@ -35,7 +35,7 @@ pub(crate) enum Cost {
 }
 
 impl Cost {
-    /// Items of a chunk, and chunks until an interrupt is looked for.
+    /// Items of a chunk, and chunks between two checks for an interrupt.
     const fn blocks(self) -> [usize; 2] {
         match self {
             Self::Lookup => [CHUNK, 4096],
@@ -44,8 +44,8 @@ impl Cost {
     }
 }
 
-/// Whether other threads work for this process. In one that was forked after they were started they
-/// do not, and waiting for them would have no end. The first call is that of the import.
+/// Whether this process has worker threads. A process that was forked after they were started has
+/// none, and would wait for them forever. The import makes the first call.
 pub(crate) fn has_threads() -> bool {
     static OWNER: OnceLock<u32> = OnceLock::new();
     *OWNER.get_or_init(process::id) == process::id()
@@ -113,7 +113,7 @@ impl<'py, T: Number, const N: usize> Input<'py, T, N> {
         &self.batch
     }
 
-    /// Its first K items, which must be there.
+    /// Its first K items, which must exist.
     pub(crate) fn first<const K: usize>(&self) -> [[T; N]; K] {
         let values = self.values(&self.batch);
         let items = values.chunk(0..K);
@@ -129,7 +129,7 @@ impl<'py, T: Number, const N: usize> Input<'py, T, N> {
             let stride = i.checked_sub(lacks).map_or(0, |i| self.strides[i]);
             match axes.last_mut() {
                 _ if n == 1 => {}
-                // No result is as large as what saturates.
+                // No result has as many items as a length that saturates.
                 Some((inner, of)) if stride == *of * *inner => *inner = inner.saturating_mul(n),
                 _ => axes.push((n, stride)),
             }
@@ -141,7 +141,8 @@ impl<'py, T: Number, const N: usize> Input<'py, T, N> {
 /// The items of an argument, one for each result.
 struct Values<'a, T, const N: usize> {
     items: &'a [[T; N]],
-    /// Lengths and strides of the axes of results, the innermost first; what can be is one axis.
+    /// Lengths and strides of the axes of results, the innermost first; axes that can be are
+    /// merged.
     axes: Vec<(usize, usize)>,
 }
 
@@ -210,7 +211,7 @@ fn filled<'py, T: Number, const M: usize>(
     if M > 1 {
         shape.push(M);
     }
-    // By NumPy's own function, which raises: too many axes, or too little memory.
+    // NumPy's own function, which raises for too many axes or too little memory.
     let array = py.import("numpy")?.call_method1("zeros", (shape, T::get_dtype(py)))?;
     let array = array.cast_into::<PyArrayDyn<T>>()?;
     {

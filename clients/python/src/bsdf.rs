@@ -98,7 +98,8 @@ impl PyBsdf {
             [x, y, z, r, g, b, sample.pdf, sample.eta, other, delta]
         };
         let all = each3(&v, &choice, &u, Cost::Lookup, draw)?;
-        // Columns of their own: a view would keep all ten, and sums along its axis round more.
+        // Columns are copied: a view of the array would keep all ten, and its sums would round
+        // more.
         let column = |index: Any<'py>| -> PyResult<Py<PyAny>> {
             let index = PyTuple::new(py, [PyEllipsis::get(py).to_owned().into_any(), index])?;
             Ok(all.get_item(index)?.call_method0("copy")?.unbind())

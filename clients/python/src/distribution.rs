@@ -24,7 +24,7 @@ pub(crate) enum Model {
     Skewed(Box<Ellipsoid>),
 }
 
-/// Calls a function of whichever it is; by tables in another way, where one is given.
+/// Calls a function of either lobe; of tables by an expression of their own, where one is given.
 macro_rules! of {
     ($kind:expr, $lobe:ident => $call:expr) => {
         of!($kind, $lobe => $call, $lobe => $call)
@@ -177,7 +177,7 @@ impl<'py, T: Number> View<'py, T> {
         }
     }
 
-    /// A function of each view; of a cosine alone, of a view without y.
+    /// A function of each view; a cosine is given as (0, 0, cos θ).
     pub(crate) fn each<const M: usize>(
         &self,
         cost: Cost,

@@ -12,10 +12,10 @@ use crate::arrays::{Any, Cost};
 use crate::distribution::{Kind, Model, PyDistribution, View, azimuth_matters};
 use crate::words::{self, refused};
 
-/// Error that the quadrature of albedos aims at.
+/// Tolerance of the quadrature of albedos.
 const TOLERANCE: f64 = 1e-9;
 
-/// Of a tilted lobe, whose clamped masking has a kink.
+/// Tolerance for a tilted lobe, whose clamped masking has a kink.
 const TOLERANCE_TILTED: f64 = 1e-6;
 
 /// A lobe by the model, in double precision: closed forms, quadrature, and roots to rounding.
@@ -42,7 +42,7 @@ impl ExactLobe {
         }
     }
 
-    /// Made once, in some milliseconds.
+    /// Made once, which takes some milliseconds.
     fn integrator(&self) -> &AlbedoIntegrator {
         let tolerance = match self.model {
             Model::Family(_) => TOLERANCE,

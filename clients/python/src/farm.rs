@@ -1,4 +1,4 @@
-//! What a farm shares out, and how a library's sets are put together; `microfacet.farm` uses it.
+//! The work that a farm shares out, and the assembly of a library's sets, for `microfacet.farm`.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};

@@ -44,7 +44,7 @@ mod _microfacet {
         module.add("ExactLobe", module.py().get_type::<ExactLobe>())?;
         module.add("ExactStudentT", module.py().get_type::<ExactStudentT>())?;
         module.add("ExactEllipsoid", module.py().get_type::<ExactEllipsoid>())?;
-        // Those of `microfacet.farm`.
+        // Classes of `microfacet.farm`.
         module.add("Assembly", module.py().get_type::<PyAssembly>())?;
         module.add("Library", module.py().get_type::<PyLibrary>())?;
         module.add("Need", module.py().get_type::<PyNeed>())?;

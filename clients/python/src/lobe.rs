@@ -15,7 +15,7 @@ use crate::arrays::{Any, Cost};
 use crate::distribution::{Kind, PyDistribution, View, azimuth_matters};
 use crate::words::{self, refused, unbound};
 
-/// The set compiled in.
+/// The embedded set, in one copy.
 pub(crate) fn embedded() -> Arc<Tables> {
     static EMBEDDED: LazyLock<Arc<Tables>> = LazyLock::new(|| Arc::new(Tables::embedded()));
     Arc::clone(&EMBEDDED)
@@ -49,7 +49,7 @@ impl PyLobe {
         self.tables.albedo_of(&*self.lobe, masking, stand_in).map_err(unbound)
     }
 
-    /// What is known of an albedo for views; cosines where they suffice.
+    /// A function of the albedo at each view; cosines are refused where the azimuth matters.
     fn of_views<'py, const M: usize>(
         &self,
         v: Option<&Any<'py>>,
@@ -64,7 +64,7 @@ impl PyLobe {
             LobeKey::Upright(lobe) => !lobe.roughness.is_isotropic(),
             key => matches!(key, LobeKey::Tilted { .. }),
         };
-        // The round lobe that stands in has no azimuth, a table of the lobe itself has.
+        // The round lobe that stands in does not depend on the azimuth, a table of the lobe does.
         if turned && matches!(views, View::Cosines(_)) && self.albedo_of(masking, false).is_ok() {
             return Err(azimuth_matters());
         }

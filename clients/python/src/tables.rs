@@ -22,7 +22,7 @@ use crate::lobe::{PyEllipsoid, PyLobe, PyStudentT, embedded};
 use crate::shape::{PyDielectricAlbedo, PyShape};
 use crate::words::{self, one_of, refused, unbound, unread, unscened};
 
-/// How long an interrupt waits for its answer while a bake runs.
+/// Time between two checks for an interrupt while a bake runs.
 const PATIENCE: Duration = Duration::from_millis(20);
 
 /// A set of tables: those built in, or of a file or folder that `microfacet-bake bake` wrote.
@@ -129,7 +129,7 @@ impl PyTables {
     fn describe<'py>(&self, py: Python<'py>) -> PyResult<Any<'py>> {
         let text = describe(self.set.provenance(), self.set.tables()).map_err(refused)?;
         let all = PyModule::import(py, "json")?.call_method1("loads", (text,))?;
-        // It is a checksum of a file's bytes, and there may be none.
+        // The checksum is of the bytes of a file, and there may be no file.
         all.call_method1("pop", ("checksum", py.None()))?;
         Ok(all)
     }
@@ -232,7 +232,7 @@ pub(crate) fn interruptible<T: Send + 'static>(
     work.join().map_err(|_| PyRuntimeError::new_err("the bake has failed"))
 }
 
-/// What tables are to be like, from the words and numbers that say so.
+/// The target of a bake, from the arguments of Python.
 pub(crate) fn target_of(
     quality: &str,
     precision: &str,
@@ -252,7 +252,7 @@ pub(crate) fn target_of(
     }
 }
 
-/// Passes on what is doubtful in a scene, and what nothing covers.
+/// Issues warnings of Python for doubts on a scene, and for what no table covers.
 pub(crate) fn warn_of(py: Python<'_>, scene: &Scene, plan: &Plan) -> PyResult<()> {
     for warning in scene.doubts().chain(plan.not_covered().map(ToString::to_string)) {
         let warning = std::ffi::CString::new(warning.replace('\0', " "))?;
@@ -261,7 +261,7 @@ pub(crate) fn warn_of(py: Python<'_>, scene: &Scene, plan: &Plan) -> PyResult<()
     Ok(())
 }
 
-/// What the arguments of `bake` ask a plan for.
+/// The options of a plan, from the arguments of `bake`.
 pub(crate) fn options_of(albedo: Option<bool>, tabulate_ggx: bool, target: Target) -> Options {
     let albedo = match albedo {
         None => AlbedoWish::Auto,
@@ -288,7 +288,7 @@ pub(crate) fn scene_of(recipe: &Any) -> PyResult<Scene> {
     scene.map_err(unscened)
 }
 
-/// A path, which an argument may be beside something else.
+/// An argument as a path; `or` names what else it may be, for the error.
 fn path(name: &str, or: &str, value: &Any) -> PyResult<PathBuf> {
     let of = value.get_type().name()?.to_string();
     let why = |_| PyTypeError::new_err(format!("{name} must be {or} or a path, and is a {of}"));

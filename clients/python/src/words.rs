@@ -1,4 +1,4 @@
-//! What Python passes as numbers and words, and errors as Python's.
+//! Numbers and words that Python passes, and errors as those of Python.
 
 use std::io;
 
@@ -45,7 +45,7 @@ pub(crate) fn unread(why: StoreError) -> PyErr {
     }
 }
 
-/// A number that stands for all N, or N of them; `meaning` says what they are.
+/// N numbers, or one number for all N; `meaning` describes them in errors.
 pub(crate) fn numbers<const N: usize>(
     name: &'static str,
     value: &Any,
@@ -67,7 +67,7 @@ pub(crate) fn sigma(value: &Any) -> PyResult<Roughness> {
     Ok(Roughness(numbers("sigma", value, "a pair (sigma_x, sigma_y)")?))
 }
 
-/// Three turns; a number would stand for none of them.
+/// Three angles; a single number is an error.
 pub(crate) fn angles(value: &Any) -> PyResult<[f64; 3]> {
     let input = Input::<f64, 3>::new("theta", value)?;
     match input.batch() {

@@ -1,4 +1,4 @@
-//! G1 and E of the lobes shown, beside GGX and Beckmann of the same σ.
+//! G1 and E of the lobes shown, compared with GGX and Beckmann of the same σ.
 
 use std::f64::consts::PI;
 
@@ -17,22 +17,22 @@ use crate::plot::{Axis, Curve, Dash, Key, Panel};
 use crate::words::material::material;
 use crate::words::{number, range};
 
-/// Views of a curve, denser at the normal, where heavy tails fall, and at the horizon.
+/// Intervals of θ along a curve, denser at the normal, where heavy tails fall, and at the horizon.
 const VIEWS: u32 = 45;
-/// The view of which captions state the numbers, in degrees.
+/// θ in degrees of the view whose values captions state.
 const STATED: f64 = 80.0;
 
 struct Line {
     name: String,
     key: Key,
     dash: Dash,
-    /// Of a view: G1; and E, of the round lobe of √(σx σy), where a table covers it.
+    /// G1 of a view, and E of the round lobe of √(σx σy) if a table covers it.
     quantities: [Option<Quantity>; 2],
 }
 
 type Quantity = Box<dyn Fn(Vec3) -> f32>;
 
-/// The titles and axes of the panels, one a quantity.
+/// Titles and labels of the panels, one for each of `Line::quantities`.
 const PANELS: [[&str; 2]; 2] = [
     ["Masking", "G1, the share of facets that is seen"],
     ["Directional albedo, F = 1", "E, the share of light that returns"],
@@ -44,7 +44,6 @@ impl Line {
         Self { name, key, dash, quantities: [Some(Box::new(move |v| lobe.g1(v))), e] }
     }
 
-    /// A lobe of the family, in its own colour.
     fn of_family(set: &Tables, shown: &Shown, gamma: f64) -> Option<Self> {
         let lobe = set.lobe(shown.sigma, gamma).ok()?;
         let albedo = set.albedo(shown.round_sigma(), gamma, shown.masking()).ok();
@@ -55,7 +54,7 @@ impl Line {
             }
             _ => (format!("γ = {}", number(gamma)), Key::TABLE, Dash::Solid),
         };
-        // The lobe itself is drawn without gaps, whatever it is.
+        // The lobe that the figure is about has a solid line, even if it is GGX or Beckmann.
         let dash = if gamma == shown.gamma { Dash::Solid } else { dash };
         Some(Self::new(name, key, dash, lobe, albedo))
     }
@@ -78,14 +77,14 @@ impl Line {
         Some(Curve::new(self.key, &self.name, points).dashed(self.dash))
     }
 
-    /// The quantity at the view that is stated, with the name of the lobe.
+    /// The quantity at θ = [`STATED`], with the name of the lobe.
     fn stated(&self, quantity: usize) -> Option<String> {
         let value = self.quantities[quantity].as_ref()?(view(STATED));
         Some(format!("{value:.3} ({})", unbroken(&self.name)))
     }
 }
 
-/// A view at this many degrees from the normal, in the azimuth of x.
+/// The view direction at this angle from the normal, in the plane of x and z.
 fn view(degrees: f64) -> Vec3 {
     let (sin, cos) = degrees.to_radians().sin_cos();
     Vec3::new(sin as f32, 0.0, cos.max(0.0) as f32)
@@ -107,7 +106,7 @@ pub(super) fn section(source: &Source, subjects: &Subjects) -> Markup {
     }
 }
 
-/// Materials with lobes that GGX and Beckmann do not compare with.
+/// Materials whose lobes are drawn without GGX and Beckmann: tilted, or outside the family.
 fn others(set: &Tables) -> Vec<&MaterialEntry> {
     let is_other = |entry: &&MaterialEntry| {
         let family = entry.lobe.is_upright();
@@ -116,7 +115,7 @@ fn others(set: &Tables) -> Vec<&MaterialEntry> {
     set.provenance().materials.iter().filter(is_other).collect()
 }
 
-/// A lobe of the family beside GGX and Beckmann.
+/// A lobe of the family with GGX and Beckmann of the same σ.
 fn of_family(set: &Tables, shown: &Shown) -> Markup {
     let beside = [2.0, f64::INFINITY].into_iter().filter(|&gamma| gamma != shown.gamma);
     let gammas = std::iter::once(shown.gamma).chain(beside);
@@ -141,7 +140,7 @@ fn of_material(set: &Tables, entry: &MaterialEntry) -> Markup {
     figure(&entry.name, &[line], &what)
 }
 
-/// The plots of some lobes, the first of which it is about.
+/// The plots of some lobes; the first lobe is the subject of the figure.
 fn figure(name: &str, lines: &[Line], what: &Markup) -> Markup {
     let drawn: [(Vec<Curve>, String); 2] = std::array::from_fn(|i| {
         let stated: Vec<String> = lines.iter().filter_map(|line| line.stated(i)).collect();

@@ -1,20 +1,20 @@
-//! Plots of a page, and the letters of its texts.
+//! Plots and tables of a page, and the typography of its texts.
 
 use maud::{Markup, PreEscaped, html};
 
 use crate::plot::{Figure, Panel};
 use crate::words;
 
-/// Pixels of a plot: two stand side by side on paper, and its letters can be read on a phone.
+/// Size of a plot in pixels: two fit side by side on paper, and the text is legible on a phone.
 pub(super) const SIZE: [f64; 2] = [380.0, 290.0];
 
-/// A panel as an element of the page; `label` says what is seen.
+/// A panel as an element of the page; `label` describes it for screen readers.
 pub(super) fn plot(panel: Panel, label: &str) -> Markup {
     let figure = Figure { panels: vec![panel], columns: 1, panel: SIZE };
     PreEscaped(figure.drawing().inline_svg(label))
 }
 
-/// A table that scrolls by itself, with headings of words, then of numbers.
+/// A table that scrolls by itself, with headings of columns of words, then of columns of numbers.
 pub(super) fn table(
     label: &str,
     caption: &Markup,
@@ -37,17 +37,17 @@ pub(super) fn table(
     }
 }
 
-/// An error to three digits, which no line breaks.
+/// An error to three digits, with a minus sign, at which no line breaks.
 pub(super) fn error(x: f64) -> String {
     words::error(x).replace('-', "−")
 }
 
-/// Equations that no line breaks.
+/// The text with no-break spaces about its equals signs.
 pub(super) fn unbroken(text: &str) -> String {
     text.replace(" = ", "\u{a0}=\u{a0}")
 }
 
-/// A text that is written for terminals, with the letters of the field for their names.
+/// A text for terminals, with the names of Greek letters and of infinity replaced by symbols.
 pub(super) fn symbols(text: &str) -> String {
     let is_part = |c: char| c.is_alphanumeric();
     let mut out = String::with_capacity(text.len());
@@ -70,10 +70,10 @@ pub(super) fn symbols(text: &str) -> String {
     out
 }
 
-/// A text in which backticks enclose what is typed.
+/// A text as HTML, in which what backticks enclose is code.
 pub(super) fn code(text: &str) -> Markup {
     let parts: Vec<&str> = text.split('`').collect();
-    // One that encloses nothing is a letter of some name.
+    // With an odd number of backticks one belongs to a name, and none is taken for a mark.
     if parts.len().is_multiple_of(2) {
         return html! { (text) };
     }

@@ -19,7 +19,7 @@ const VIEWS: [f64; 21] = [
 /// A share of the light that a furnace returns.
 type Share = fn(&Furnace) -> f64;
 
-/// What is drawn, with the place of its colour.
+/// The curves: name, index of the colour, dash and share.
 const SHARES: [(&str, usize, Dash, Share); 3] = [
     ("one bounce", 1, Dash::Solid, |row| row.single),
     ("with Kulla–Conty's lobe", 0, Dash::Solid, |row| row.kulla_conty),
@@ -81,7 +81,7 @@ fn drawn(set: &Tables, shown: &Shown, rows: &[Furnace]) -> Markup {
     };
     let [single, kulla_conty, turquin] = SHARES.map(|(.., share)| furthest(rows, share));
     let least = rows.iter().flat_map(|row| SHARES.map(|(.., share)| share(row)));
-    // A tenth below what is lowest, so that no curve lies on the edge.
+    // A tenth below the lowest value, so that no curve lies on the edge.
     let low = ((least.fold(1.0, f64::min) * 10.0).floor() / 10.0 - 0.1).clamp(0.0, 0.8);
     let x = Axis::linear("cos θ, 0 for a grazing view", 0.0, 1.0);
     let y = Axis::linear("share of light that returns", low, 1.05);
@@ -113,9 +113,9 @@ fn drawn(set: &Tables, shown: &Shown, rows: &[Furnace]) -> Markup {
     }
 }
 
-/// How far from 1 a share is at most, and the cosine there.
+/// The largest deviation of a share from 1, and cos θ there.
 fn furthest(rows: &[Furnace], share: Share) -> [f64; 2] {
     let off = rows.iter().map(|row| [(share(row) - 1.0).abs(), row.cos_theta]);
-    // A NaN is larger than any number.
+    // `total_cmp` orders NaN above all numbers.
     off.max_by(|a, b| a[0].total_cmp(&b[0])).unwrap_or([f64::NAN; 2])
 }

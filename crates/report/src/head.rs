@@ -9,7 +9,7 @@ use super::drawing::symbols;
 use super::subjects::Subjects;
 use crate::words;
 
-/// The name of the set, what it is in a few numbers, and the switch of colours.
+/// The name of the set, its tables, bytes and shapes in numbers, and the switch of colours.
 pub(super) fn head(source: &Source, subjects: &Subjects) -> Markup {
     html! {
         header.head.wrap {
@@ -27,7 +27,7 @@ pub(super) fn head(source: &Source, subjects: &Subjects) -> Markup {
     }
 }
 
-/// Hidden until there is a script that listens.
+/// The switch of colours, hidden until the page's script runs.
 fn themes() -> Markup {
     html! {
         fieldset.theme hidden {

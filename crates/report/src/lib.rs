@@ -1,13 +1,12 @@
 //! A set as one HTML page: what it holds, where its errors are, and how its materials look. The
-//! page needs nothing beside it, no network, and no more than a browser.
+//! page is one file, and needs a browser but no network.
 //!
-//! [`page()`] makes it, one section a file; [`error_map`] measures a table over two of its
-//! axes, by the rulers of its certificate; [`picture`] is the sphere of a material by the crate's
-//! own BSDFs, as the page draws it in WebGL.
+//! [`page()`] makes it, one section a file; [`error_map`] measures a table over two of its axes,
+//! with the error measures of its certificate; [`picture`] is the sphere of a material by the
+//! sampler's BSDFs, as the page draws it in WebGL.
 //!
-//! All drawing lives here: [`plot`] has figures of the literature and of the model as data, and
-//! writes them as SVG and PNG. [`words`] is what commands and pages say of sets, tables,
-//! certificates and verdicts, so that both say the same.
+//! [`plot`] has figures of the literature and of the model as data, and writes them as SVG and PNG.
+//! [`words`] describes sets, tables, certificates and verdicts, the same in commands and pages.
 
 mod curves;
 mod drawing;
@@ -38,7 +37,7 @@ pub struct Source<'a> {
     pub name: &'a str,
     /// The set.
     pub set: &'a Tables,
-    /// What a validation of it found.
+    /// The record of a validation of the set.
     pub validation: Option<&'a Record>,
 }
 
@@ -57,9 +56,9 @@ pub enum ReportError {
          is reported"
     )]
     OtherSet {
-        /// The identity of that.
+        /// The identity of the set that was validated.
         of: String,
-        /// The identity of this.
+        /// The identity of the set of the page.
         set: String,
     },
     /// The set could not be written, and so has no identity.
@@ -79,7 +78,7 @@ pub fn seconds(source: &Source) -> f64 {
     errors::seconds(source.set) + energy::seconds(source.set) + sphere::seconds(source.set)
 }
 
-/// The page, as HTML; each part of it is a stage of the meter, on which [`seconds`] were expected.
+/// The page as HTML. Its sections are stages of the meter, which is to expect [`seconds`].
 ///
 /// # Errors
 /// [`ReportError`] for a set with nothing to show, or one that lacks what it declares, and for a

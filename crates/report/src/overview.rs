@@ -12,7 +12,7 @@ use super::served::{Served, served};
 use crate::words::table::{albedos, axis, covers, holds, normals, precision};
 use crate::words::{bytes, certificate, count};
 
-/// Rows of a table of the page; a library has thousands of materials.
+/// Most rows of a table of the page; a library has thousands of materials.
 const ROWS: usize = 200;
 /// Tables whose axes and certificates are listed.
 const DETAILS: usize = 40;
@@ -32,7 +32,6 @@ pub(super) fn section(source: &Source) -> Markup {
     }
 }
 
-/// The ranges of a set without materials by name.
 fn ranges(set: &Tables) -> Markup {
     html! {
         p { "No materials by name; the set serves any in these ranges." }

@@ -7,7 +7,7 @@ use microfacet_baker::progress::Meter;
 use super::subjects::Subjects;
 use super::{ReportError, Source, curves, energy, errors, head, overview, sphere, validated};
 
-/// Nothing is loaded: neither scripts nor pictures from elsewhere.
+/// The content security policy: the page loads nothing from elsewhere.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
                       script-src 'unsafe-inline'; img-src data: blob:";
 

@@ -1,5 +1,5 @@
-//! Draws figures of the literature as data, as SVG and as PNG: pure functions, without files or
-//! fonts of the system.
+//! Figures of the literature as data, drawn as SVG and PNG: pure functions, without files or fonts
+//! of the system.
 
 mod axis;
 mod clip;
@@ -25,18 +25,18 @@ pub use sheet::{Content, Sheet, Tile};
 /// A curve with its name in the legend.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// What it is, which its colour follows from.
+    /// What the curve shows; this sets its colour.
     pub key: Key,
     /// Name; the legend leaves out a curve without one.
     pub name: String,
-    /// How it is drawn.
+    /// How the line is drawn.
     pub dash: Dash,
     /// (x, y), x ascending; a point with NaN interrupts it.
     pub points: Vec<(f64, f64)>,
 }
 
 impl Curve {
-    /// A curve without gaps.
+    /// A curve with a solid line.
     pub fn new(
         key: Key,
         name: impl Into<String>,
@@ -46,17 +46,17 @@ impl Curve {
         Self { key, name: name.into(), dash: Dash::Solid, points }
     }
 
-    /// The same with dashes.
+    /// The same curve with this dash.
     #[must_use]
     pub fn dashed(self, dash: Dash) -> Self {
         Self { dash, ..self }
     }
 }
 
-/// A point with its name beside it.
+/// A point with its name next to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mark {
-    /// What it is, which its colour follows from.
+    /// What the point shows; this sets its colour.
     pub key: Key,
     /// Name.
     pub name: String,
@@ -66,8 +66,8 @@ pub struct Mark {
     pub filled: bool,
 }
 
-/// One coordinate system. A curve that leaves it is interrupted there, and a triangle in its
-/// colour points to where it went.
+/// One coordinate system. A curve that leaves its range is interrupted there, and a triangle of the
+/// curve's colour at the edge points outwards.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     /// Title.
@@ -94,14 +94,15 @@ impl Panel {
         Self { title: title.into(), x, y, curves, marks: Vec::new() }
     }
 
-    /// Where a point stands: (0, 0) is the left lower corner, (1, 1) the right upper one.
+    /// A point as fractions of the panel, (0, 0) at the left lower corner, (1, 1) at the right
+    /// upper.
     fn place(&self, (x, y): (f64, f64)) -> [f64; 2] {
         [self.x.fraction(x), self.y.fraction(y)]
     }
 }
 
-/// Panels in rows. The legend of a row's curves stands beneath it, or beneath the last of the rows
-/// that share it.
+/// Panels in rows. The legend of a row's curves is beneath it, or beneath the last of the rows that
+/// share it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
     /// Panels, row by row.
@@ -118,7 +119,7 @@ impl Figure {
         Self { panels: panels.into_iter().collect(), columns: 2, panel: [560.0, 400.0] }
     }
 
-    /// Draws it.
+    /// The figure as a drawing.
     pub fn drawing(&self) -> Drawing {
         layout::drawing(self)
     }
@@ -130,7 +131,7 @@ pub enum PlotError {
     /// No figure has this name.
     #[error("no figure `{0}`; there are {names}", names = FIGURES.map(|of| of.name).join(", "))]
     Unknown(String),
-    /// Why there is no image.
+    /// The image could not be made, with the reason.
     #[error("the figure could not be drawn: {0}")]
     Drawing(String),
 }
@@ -205,7 +206,7 @@ mod tests {
         };
         let mut panel = panel(Vec::new());
         panel.marks = (0..6).map(mark).collect();
-        // Neither do they lie on a curve.
+        // Names must not lie on a curve either.
         panel.curves = vec![curve(Key::Gamma(2.0), &[(0.0, 10.0), (1.0, 10.0)])];
         let drawn = svg(vec![panel]);
         let names: Vec<[f64; 3]> = drawn

@@ -1,4 +1,4 @@
-//! What serves each material of a set, and why something does not.
+//! Which tables or closed forms serve each material of a set, and why the set has no table.
 
 use std::collections::BTreeMap;
 
@@ -22,9 +22,9 @@ pub(super) struct Served<'a> {
     pub(super) bytes: usize,
 }
 
-/// What serves a part of a material.
+/// What serves masking and normals, or the albedo, of a material.
 pub(super) struct Part {
-    /// In few words.
+    /// In a few words.
     pub(super) what: &'static str,
     /// Why the set has no table for it.
     pub(super) skipped: Option<String>,
@@ -45,7 +45,7 @@ pub(super) fn served(set: &Tables) -> Vec<Served<'_>> {
     set.provenance().materials.iter().map(one).collect()
 }
 
-/// What a plan of the recipe that the set keeps decides on albedos, if it can be planned.
+/// The verdicts on albedos in a plan of the set's recipe, by material; empty without a plan.
 fn wishes(recipe: &str) -> BTreeMap<String, AlbedoVerdict> {
     let Ok(scene) = Scene::from_recipe_str(recipe) else { return BTreeMap::new() };
     let Ok(plan) = Plan::new(&scene, Options::default()) else { return BTreeMap::new() };
@@ -147,7 +147,7 @@ fn tables_of<'a>(
     entry: &'a MaterialEntry,
 ) -> impl Iterator<Item = &'a Table> + 'a {
     let own = entry.lobe.tabulated();
-    // Of its shape for visible normals, and of refraction.
+    // Visible normals and refraction are tabulated for the round lobe.
     let round = entry.lobe.round();
     let reflectances: Vec<Reflectance> =
         entry.fresnel.as_ref().map_or(vec![Reflectance::Mirror], Reflectance::tabulated);
@@ -163,7 +163,7 @@ fn tables_of<'a>(
     set.tables().iter().filter(reads)
 }
 
-/// Whether a table of a reflectance serves one of a material's: moments are read for F = 1 as well.
+/// Whether a table of reflectance `of` serves one of the wanted; that of F = 1, the moments, does.
 fn reads_of(of: &Reflectance, wanted: &[Reflectance]) -> bool {
     *of == Reflectance::Mirror || wanted.iter().any(|wanted| of.contains(wanted))
 }

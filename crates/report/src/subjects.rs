@@ -1,4 +1,4 @@
-//! What of a set is shown: the shapes that the sphere can have, and the materials of the curves.
+//! What of a set is shown: shapes of the sphere, and lobes with curves and pictures.
 
 use microfacet_core::shape::gamma_of_s;
 use microfacet_sampler::{Masking, Tables};
@@ -7,9 +7,9 @@ use microfacet_tables::MaterialEntry;
 use super::drawing::{symbols, unbroken};
 use crate::words::number;
 
-/// Most shapes whose visible normals a page holds; others are drawn by the next heavier tails.
+/// Most shapes whose visible normals a page holds; others are sampled from the next heavier tails.
 const SLICES: usize = 8;
-/// Most shapes that a page lets choose from.
+/// Most shapes that a page offers.
 const STOPS: usize = 64;
 /// Most materials with curves, a furnace and a picture of their own.
 pub(super) const SHOWN: usize = 8;
@@ -21,7 +21,7 @@ const ROUND: [f64; 40] = [
     40.0, 50.0, 60.0, 80.0, 100.0,
 ];
 
-/// Shapes and roughnesses that stand for a set without materials by name.
+/// Shapes and roughness that are shown for a set without materials by name.
 const SHAPES: [f64; 6] = [1.501, 1.65, 2.0, 3.0, 5.0, f64::INFINITY];
 const SIGMA: f64 = 0.3;
 
@@ -29,13 +29,13 @@ const SIGMA: f64 = 0.3;
 pub(super) struct Subjects {
     /// The shapes γ that the sphere can have, ascending.
     pub(super) stops: Vec<f64>,
-    /// Those of them whose visible normals the page holds, ascending; the first is the first stop.
+    /// The stops whose visible normals the page holds, ascending; the first is the first stop.
     pub(super) slices: Vec<f64>,
     /// Whether the set holds a range of shapes, of which the stops are examples.
     pub(super) is_range: bool,
     /// Lobes with curves and pictures of their own.
     pub(super) shown: Vec<Shown>,
-    /// Materials that could have them and are left out.
+    /// Number of lobes beyond [`SHOWN`], which are left out.
     pub(super) left_out: usize,
 }
 
@@ -83,7 +83,7 @@ impl Subjects {
 }
 
 impl Shown {
-    /// σ of the round lobe that it is, or that stands in for it.
+    /// σ of a round lobe, or of the round lobe that stands in for another.
     pub(super) fn round_sigma(&self) -> f64 {
         self.entry.as_ref().map_or(self.sigma[0], |entry| entry.lobe.round_sigma())
     }
@@ -120,7 +120,7 @@ fn is_shown(set: &Tables, entry: &MaterialEntry) -> bool {
 
 /// The shapes to choose from, and whether some are examples of a range.
 fn stops(set: &Tables, materials: &[&MaterialEntry]) -> (Vec<f64>, bool) {
-    // An end that is a short number has passed through 1/(γ−1).
+    // Ends have passed through 1/(γ−1), which spoils the last digits of a short number.
     let short = |x: f64| format!("{x:.9e}").parse().unwrap_or(x);
     let mut stops: Vec<f64> = materials.iter().map(|entry| entry.lobe.gamma()).collect();
     let mut is_range = false;

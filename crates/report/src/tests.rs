@@ -1,4 +1,4 @@
-//! Whole pages: what names do to them, and how large they are.
+//! Whole pages: the escaping of names, and their size.
 
 use microfacet_baker::plan::{Options, Plan};
 use microfacet_baker::progress::Meter;
@@ -64,7 +64,7 @@ fn what_a_file_says_is_text() {
     const HOSTILE: &str = "\" onload=\"x</script><!--<img src=x onerror='x'>\u{202e}&amp;";
     let (plain, hostile) = (marked("plain"), marked(HOSTILE));
     assert!(hostile.len() > plain.len() + 20 * HOSTILE.len(), "it is on the page");
-    // No element more, in the data of the script either.
+    // Hostile names add no element, in the data of the script either.
     let elements = |page: &str| page.matches('<').count();
     assert_eq!(elements(&hostile), elements(&plain));
     let (before, rest) = hostile.split_once("<script id=\"sphere-data\"").unwrap();
@@ -77,7 +77,7 @@ fn what_a_file_says_is_text() {
     assert_eq!(data["materials"][0]["name"], format!("{HOSTILE}a"));
 }
 
-/// A page of so many materials and tables is that of the first ones.
+/// A page of many materials and tables shows the first ones.
 #[test]
 fn a_library_does_not_swell_the_page() {
     let few = set();

@@ -24,7 +24,7 @@ const VIEWS: [(f64, f64, f64); 6] = [
     (2.0, 2.5, 0.9),
 ];
 
-/// Prints what the module's page says.
+/// Runs the study that the module describes.
 pub fn run(_: &[String]) -> Outcome {
     let truth: Vec<f64> = VIEWS.iter().map(|&view| quadrature(view, 1e-13)).collect();
     print_head(&["method", "nodes or samples", "RMS error", "time of one albedo, ms"]);

@@ -80,7 +80,7 @@ const PARTS: [Part; 4] = [
     ("σ < 0.01", |sigma, _| sigma < 0.01),
 ];
 
-/// Prints what the module's page says.
+/// Runs the study that the module describes.
 pub fn run(_: &[String]) -> Outcome {
     print_head(&[&["coordinate", "nodes"], &PARTS.map(|part| part.0)[..]].concat());
     let materials: Vec<Material> =
@@ -146,7 +146,7 @@ fn errors(design: &Design, material: Material) -> [[f64; 2]; 4] {
         })
     };
     let mut worst = [[0.0_f64; 2]; 4];
-    // The middle of every cell, and two places beside it.
+    // Three points in each cell, one of them near its middle.
     for i in 0..3 * (design.nodes - 1) {
         let t = (i as f64 / 3.0 + 0.2) / (design.nodes - 1) as f64;
         let cos = cosine(at, first, t);

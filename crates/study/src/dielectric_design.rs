@@ -1,5 +1,5 @@
 //! Why the default set holds no albedos of dielectrics: errors and sizes of coarse tables over
-//! nearly all of γ, σ and η, and over parts.
+//! nearly all of γ, σ and η, and over smaller ranges.
 //!
 //! `cargo run --release -p microfacet-study -- dielectric_design` prints the table in
 //! `docs/albedo.md`. Each row is baked with nodes spread evenly in the coordinates of albedo
@@ -17,8 +17,8 @@ use microfacet_tables::{
 
 use crate::{Outcome, baked, print_head};
 
-/// Error aimed at in a node. Estimates are careful: at places throughout the domain even 1e-2 gives
-/// values that are right to 2e-4.
+/// Tolerance of a node. The quadrature's estimates of errors are conservative: throughout the
+/// domain even 1e-2 gives values that are right to 2e-4.
 const TOLERANCE: f64 = 1e-3;
 
 /// What the tables of a row cover, and their nodes.
@@ -76,7 +76,6 @@ impl Design {
     }
 }
 
-/// The smallest domain.
 const SMALL: Design = Design {
     gamma: 2.0,
     sigma: 1.0,
@@ -87,7 +86,7 @@ const SMALL: Design = Design {
     views: [19, 25],
 };
 
-/// The domain that was asked for.
+/// The domain that tables should cover.
 const LARGE: Design = Design {
     gamma: 1.6,
     sigma: 3.0,
@@ -120,7 +119,7 @@ fn errors(spec: &AlbedoSpec) -> Result<String, AlbedoError> {
     Ok(errors.map(|x| format!("{x:.1e}")).join(" / "))
 }
 
-/// Prints what the module's page says.
+/// Runs the study that the module describes.
 pub fn run(arguments: &[String]) -> Outcome {
     let row: Option<usize> = arguments.first().and_then(|row| row.parse().ok());
     print_head(&["covered", "γ × σ × η", "views", "bytes", "thin side", "dense side"]);

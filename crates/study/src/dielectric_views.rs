@@ -3,7 +3,7 @@
 //!
 //! `cargo run --profile dist -p microfacet-study -- dielectric_views` prints the table in
 //! `docs/albedo.md`, the largest error in the promised range over some roughnesses and indices; and
-//! the same at one γ for parameters beside those of three parts.
+//! the same at γ = 1.55 for other parameters of three parts.
 
 use microfacet_baker::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec};
 use microfacet_baker::table_spec::Quality;
@@ -47,7 +47,7 @@ fn worst(gamma: f64, views: (CriticalBlend, usize)) -> Result<String, AlbedoErro
     Ok(worst.map(|x| format!("{x:.1e}")).join(", "))
 }
 
-/// Prints what the module's page says.
+/// Runs the study that the module describes.
 pub fn run(_: &[String]) -> Outcome {
     print_head(&["γ", "two parts, 65 views: reflected, transmitted", "three parts, 67 views"]);
     for gamma in GAMMAS {

@@ -51,7 +51,7 @@ fn least(mut a: impl FnMut() -> f64, mut b: impl FnMut() -> f64) -> [f64; 2] {
     (0..ROUNDS).fold([f64::INFINITY; 2], |[x, y], _| [x.min(a()), y.min(b())])
 }
 
-/// Prints what the module's page says.
+/// Runs the study that the module describes.
 pub fn run(_: &[String]) -> Outcome {
     let (tables, inputs) = (Tables::embedded(), inputs());
     let sigma = [0.2, 0.5];

@@ -33,7 +33,7 @@ fn any(rng: &mut StdRng, gamma: f64) -> (Ellipsoid, DVec3) {
     (ellipsoid.expect("above 3/2"), DVec3::new(r * cos, r * sin, z))
 }
 
-/// Prints what the module's page says.
+/// Runs the study that the module describes.
 pub fn run(_: &[String]) -> Outcome {
     println!("Weights G2/G1 of reflected samples, {} of each shape:", ELLIPSOIDS * DRAWS as u64);
     println!("{:<8}{:>24}{:>24}", "gamma", "G1(v) G1(l): largest", "correlated: largest");
@@ -62,7 +62,7 @@ pub fn run(_: &[String]) -> Outcome {
     Ok(())
 }
 
-/// A number close to 1, as its distance.
+/// A number close to 1, as its distance from 1.
 fn beside_one(x: f64) -> String {
     match x - 1.0 {
         0.0 => "1".into(),
@@ -124,7 +124,7 @@ type Draw<'a> = &'a mut dyn FnMut(&Lune<'_>, DVec3, &mut dyn FnMut() -> f64) -> 
 
 fn line<'a>(name: &str, some: impl Iterator<Item = &'a Tries>) {
     let some: Vec<&Tries> = some.collect();
-    // Of all draws together, those that were accepted: as many for each ellipsoid.
+    // The accepted share of all draws; each ellipsoid accepts as many.
     let share = |version: usize| {
         let draws: usize = some.iter().map(|t| t.draws[version]).sum();
         (some.len() * DRAWS) as f64 / draws as f64

@@ -1,5 +1,5 @@
-//! What only we run: reproductions of the papers, a small path tracer, and the measurements behind
-//! the choices that the other crates make.
+//! Reproductions of the papers, a small path tracer, and the measurements behind the choices that
+//! the other crates make. This crate is not published.
 //!
 //! `cargo run --release -p microfacet-study` lists them; each module says what it prints, and which
 //! page of `docs/` shows it. `docs/reproduced.md` has the claims of the papers, one a row.
@@ -30,7 +30,7 @@ use microfacet_baker::certify::albedo::{certified, edge_references, interior_ref
 use microfacet_baker::progress::Stage;
 use microfacet_tables::Table;
 
-/// How a study ends.
+/// The result of a study.
 pub type Outcome = Result<(), Box<dyn Error>>;
 
 /// A study, as the command line names it.
@@ -40,7 +40,7 @@ pub struct Study {
     pub name: &'static str,
     /// What it shows.
     pub what: &'static str,
-    /// Prints it, given what follows its name on the command line.
+    /// Runs it, given the arguments after its name.
     pub run: fn(&[String]) -> Outcome,
 }
 
@@ -48,7 +48,7 @@ const fn study(name: &'static str, what: &'static str, run: fn(&[String]) -> Out
     Study { name, what, run }
 }
 
-/// All of them, by name.
+/// All studies, by name.
 pub const STUDIES: [Study; 18] = [
     study(
         "albedo_convergence",

@@ -1,6 +1,5 @@
-//! What bakes take next to what is planned: bakes sets of one kind each on one thread, as drafts
-//! and in default quality, without a cache, and prints seconds and bytes as measured and as
-//! planned.
+//! Seconds and bytes of bakes, as measured and as planned: bakes sets of one kind each on one
+//! thread, as drafts and in default quality, without a cache.
 //!
 //! ```sh
 //! cargo run --profile dist -p microfacet-study -- planned
@@ -18,7 +17,7 @@ use microfacet_tables::{Precision, encode};
 
 use crate::Outcome;
 
-/// Materials by name, each a set of its own: the kinds of tables, and the corners of what their
+/// Materials by name, each a set of its own: all kinds of tables, and the extremes of what their
 /// times depend on.
 const SETS: [(&str, &str); 13] = [
     ("a glass", "sigma = 0.454\ngamma = 3\nfresnel = \"mirror\""),
@@ -58,7 +57,7 @@ fn metals() -> String {
     (0..50).map(one).collect()
 }
 
-/// Prints what the module's page says.
+/// Runs the study that the module describes.
 pub fn run(arguments: &[String]) -> Outcome {
     let planned = |scene: &Scene| Plan::new(scene, Options::default());
     let mut plans: Vec<(&str, Plan)> = Vec::new();

@@ -1,5 +1,5 @@
-//! The formulas for Λ as printed by Ribardière et al. 2017 (doi:10.1111/cgf.13137), beside the
-//! conditioned form: the table of `docs/formulas.md`.
+//! The formulas for Λ as printed by Ribardière et al. 2017 (doi:10.1111/cgf.13137), compared with
+//! the well-conditioned one: the table of `docs/formulas.md`.
 //!
 //! `cargo run --release -p microfacet-study -- printed_formulas` prints it;
 //! `microfacet-bake plot printed-formulas` draws the curves.
@@ -16,7 +16,7 @@ fn cotangents() -> impl Iterator<Item = f64> {
     (0..=400).map(|i| libm::exp10(-6.0 + 0.025 * f64::from(i)))
 }
 
-/// Prints what the module's page says.
+/// Runs the study that the module describes.
 pub fn run(_: &[String]) -> Outcome {
     let figures = ["largest error of G1", "at z", "largest G1 - 1", "smallest G1"];
     print_head(&[&["eq.", "gamma"], &figures[..], &["no digit of lambda from z"]].concat());
@@ -31,7 +31,7 @@ pub fn run(_: &[String]) -> Outcome {
     Ok(())
 }
 
-/// The cells of one form at one γ.
+/// The cells of one formula at one γ.
 fn row(gamma: f64, form: impl Fn(f64) -> f64) -> String {
     let shape = Shape::new(gamma).expect("above 3/2");
     let (mut error, mut at, mut high, mut low, mut lost) =

@@ -1,5 +1,5 @@
-//! How good the estimate of the time left is: bakes without a cache, reads the progress meanwhile,
-//! and prints by how much each estimate was off once the bake has ended.
+//! The accuracy of the estimate of the time left: bakes without a cache, reads the progress
+//! meanwhile, and prints by how much each estimate was off once the bake has ended.
 //!
 //! ```sh
 //! cargo run --profile dist -p microfacet-study -- progress default
@@ -22,7 +22,7 @@ use microfacet_tables::Precision;
 
 use crate::Outcome;
 
-/// Prints what the module's page says.
+/// Runs the study that the module describes.
 pub fn run(arguments: &[String]) -> Outcome {
     let [target, recipe @ ..] = arguments else {
         return Err("which quality or error? default, high, or a number".into());

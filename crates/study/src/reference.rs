@@ -1,10 +1,10 @@
 //! Test vectors for readers of tables in other languages: `docs/reference.csv`.
 //!
 //! `cargo run --release -p microfacet-study -- reference docs/reference.csv` writes them. Every row
-//! is one material, one view, one pair of random numbers and one normal, with what the model in
-//! double precision says of them (columns `…_exact`) and what the run-time crate reads from the
-//! embedded tables in single precision (`…_table`). Inputs but γ are single-precision numbers,
-//! written so that they are read back as they are. `docs/format.md` says what the columns are.
+//! is one material, one view, one pair of random numbers and one normal, with the values of the
+//! model in double precision (columns `…_exact`) and those of the sampler from the embedded tables
+//! in single precision (`…_table`). Inputs except γ are single-precision numbers, written so that
+//! they are read back unchanged. `docs/format.md` defines the columns.
 
 use std::collections::HashMap;
 use std::fmt::{Debug, Write};
@@ -21,7 +21,7 @@ use crate::Outcome;
 const USAGE: &str =
     "usage: cargo run --release -p microfacet-study -- reference docs/reference.csv";
 
-/// Prints what the module's page says.
+/// Runs the study that the module describes.
 pub fn run(arguments: &[String]) -> Outcome {
     let [path] = arguments else { return Err(USAGE.into()) };
     Ok(std::fs::write(path, text()).map_err(|why| format!("{path}: {why}"))?)
@@ -29,17 +29,17 @@ pub fn run(arguments: &[String]) -> Outcome {
 
 /// Columns of a row's inputs.
 const INPUTS: &str = "case,sigma_x,sigma_y,gamma,masking,vx,vy,vz,u1,u2,mx,my,mz,lx,ly,lz";
-/// Columns of what follows from them, each first as `…_exact`, then as `…_table`: of directions and
-/// of albedos.
+/// Columns of the results, once with the suffix `_exact` and once with `_table`: of directions,
+/// then of albedos.
 const RESULTS: [&str; 14] = [
     "g1", "g2", "d", "nx", "ny", "nz", "density", "e", "scale", "bias", "f82", "e_avg", "bias_avg",
     "f82_avg",
 ];
 
-/// Error aimed at by the quadrature of exact albedos.
+/// Tolerance of the quadrature of exact albedos.
 const TOLERANCE: f64 = 1e-11;
 
-/// The whole file.
+/// The contents of the file.
 pub fn text() -> String {
     let tables = Tables::embedded();
     let mut truth = Truth::default();
@@ -65,16 +65,16 @@ impl Debug for Digits {
     }
 }
 
-/// Cells of the file; what is not there is left blank.
+/// Cells of the file; `None` is left blank.
 fn joined(cells: impl IntoIterator<Item = Option<impl Debug>>) -> String {
     let cell = |x: Option<_>| x.map_or(String::new(), |x| format!("{x:?}"));
     cells.into_iter().map(cell).collect::<Vec<_>>().join(",")
 }
 
-/// What is asked.
+/// The inputs of a row.
 #[derive(Clone, Copy)]
 struct Row {
-    /// Why it is asked.
+    /// What the row tests.
     case: &'static str,
     sigma: [f32; 2],
     gamma: f64,
@@ -91,21 +91,19 @@ impl Row {
         (2.0 * v.dot(m) * m - v).as_vec3()
     }
 
-    /// Whether tables take the view for normal incidence, where any azimuth will do, though it has
-    /// one.
+    /// Whether tables treat the view as normal incidence, for which they take any azimuth, although
+    /// it has an azimuth.
     fn is_upright(&self) -> bool {
         let across = self.v.x.abs().max(self.v.y.abs());
         across > 0.0 && across < 1e-18
     }
 
-    /// The roughness of a round lobe, which the embedded albedos are of, where they cover it.
+    /// The roughness of a round lobe that the embedded albedos cover; `None` for other lobes.
     fn round_sigma(&self) -> Option<f64> {
         let [x, y] = self.sigma;
         (x == y && x <= 3.0).then_some(f64::from(x))
     }
 }
-
-// What the run-time crate says.
 
 /// The results of a row from tables.
 fn read(tables: &Tables, row: &Row) -> Vec<Option<f32>> {
@@ -138,9 +136,7 @@ fn all<T: Copy>(directional: [T; 7], albedo: Option<[T; 7]>) -> Vec<Option<T>> {
     [directional.map(Some), albedo].concat()
 }
 
-// What the model says.
-
-/// The model, with what is slow kept: shapes prepared, and averages, by bits of γ and σ.
+/// The model, with a cache of prepared shapes and of averages, by the bits of γ and σ.
 #[derive(Default)]
 struct Truth {
     integrators: HashMap<u64, AlbedoIntegrator>,
@@ -190,14 +186,12 @@ impl Truth {
 /// Below this γ the embedded tables lack the heavy part, and u₁ is not mapped by the whole CDF.
 const PEELED_BELOW: f64 = 1.8;
 
-// The rows.
-
 const BOTH: [Masking; 2] = [Uncorrelated, HeightCorrelated];
 const INFINITE: f64 = f64::INFINITY;
 
 fn rows() -> Vec<Row> {
     let mut rows = Rows::default();
-    // Views and normals in the middle of everything.
+    // Ordinary views and normals.
     for gamma in [1.55, 1.65, 2.0, 3.0, 10.0, INFINITE] {
         for sigma in [0.1, 0.5, 1.5] {
             let cos = if sigma == 0.5 { 0.3 } else { 0.75 };
@@ -214,7 +208,7 @@ fn rows() -> Vec<Row> {
             }
         }
     }
-    // Views below the first of the albedo's axis, down to the horizon and below.
+    // Views below the first node of the albedo's axis, down to the horizon and below.
     for gamma in [1.55, 2.0, INFINITE] {
         for masking in BOTH {
             for sigma in [0.05, 1.0] {
@@ -226,7 +220,7 @@ fn rows() -> Vec<Row> {
         }
         rows.round("below the horizon", 0.3, gamma, HeightCorrelated, -0.1);
     }
-    // Normal incidence, and all but that.
+    // Normal incidence, and views close to it.
     for gamma in [1.55, 2.0, 5.0, INFINITE] {
         for (sigma, masking) in [(0.01, BOTH[0]), (0.5, BOTH[1])] {
             rows.round("normal incidence", sigma, gamma, masking, 1.0);
@@ -254,7 +248,7 @@ fn rows() -> Vec<Row> {
     }
     let row = rows.next("u out of range", [0.4; 2], 3.0, HeightCorrelated);
     rows.push(Row { v: direction(0.5, 2.5), u: [-0.5, 1.5], ..row });
-    // The ends of the shape axis, where tables meet, and the shapes with names.
+    // The ends of the shape axis, the seam of two tables, and the shapes with names.
     for gamma in [1.501, 1.502, 1.51, 1.799_999, 1.8, 2.0, 1e9, INFINITE] {
         for masking in BOTH {
             rows.round("shape", 0.35, gamma, masking, 0.4);
@@ -289,7 +283,7 @@ fn rows() -> Vec<Row> {
     rows.0
 }
 
-/// Rows that are there, which say what numbers the next one has.
+/// The rows so far; their number determines the random numbers of the next one.
 #[derive(Default)]
 struct Rows(Vec<Row>);
 

@@ -1,5 +1,5 @@
-//! The sphere of a page and its lobe in the plane of incidence, by the crate's own BSDFs: what a
-//! browser's are held against.
+//! The sphere of a page and its lobe in the plane of incidence by the sampler's BSDFs, as a
+//! reference for those of a browser.
 //!
 //! `cargo run --release -p microfacet-study -- report_sphere --gamma 3 --sigma 0.2 --out
 //! sphere.png` writes one, and `--lobe 45` prints the lobe for a view at 45 degrees; `--help` has
@@ -55,7 +55,7 @@ struct Arguments {
     out: Option<PathBuf>,
 }
 
-/// Prints what the module's page says.
+/// Runs the study that the module describes.
 pub fn run(arguments: &[String]) -> Outcome {
     let Arguments { gamma, drawn, sigma, metal, compensation, size, samples, tables, lobe, out } =
         Arguments::parse_from(

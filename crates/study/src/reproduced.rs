@@ -1,4 +1,4 @@
-//! Numbers that papers print beside figures drawn by `microfacet-bake plot`, computed again:
+//! Numbers that papers print with figures drawn by `microfacet-bake plot`, computed again:
 //! `cargo run --release -p microfacet-study -- reproduced`.
 
 use std::f64::consts::FRAC_PI_2;
@@ -11,14 +11,14 @@ use microfacet_report::plot::Curve;
 
 use crate::{Outcome, print_head};
 
-/// Prints what the module's page says.
+/// Runs the study that the module describes.
 pub fn run(_: &[String]) -> Outcome {
     println!("Largest values of `plot beckmann-limit` over sigma, in %, after Ribardiere et al.");
     println!("2017, figure 10, with the bounds printed for gamma = 40 and sigma < 1.2:");
     let shapes = ["γ = 30", "γ = 40", "γ = 50", "γ = 100"];
     print_head(&[&["distance"], &shapes[..], &["printed", "kept at γ = 40"]].concat());
     for panel in plot::figure("beckmann-limit")?.panels {
-        // The last is the bound.
+        // The last curve is the printed bound.
         let highest: Vec<f64> = panel.curves.iter().map(|curve| largest(curve).1).collect();
         let cells: Vec<String> = highest.iter().map(|most| format!("{most:.3}")).collect();
         let kept = if highest[1] < highest[4] { "yes" } else { "no" };

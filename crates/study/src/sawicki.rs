@@ -17,7 +17,7 @@ use microfacet_model::classic::{self, Gtr, Isotropic};
 
 use crate::Outcome;
 
-/// Prints what the module's page says.
+/// Runs the study that the module describes.
 pub fn run(_: &[String]) -> Outcome {
     println!("table 1: the integral of D (m.n) with the printed constant");
     for gamma in [1.5, 2.0, 3.0] {
@@ -59,7 +59,7 @@ pub fn run(_: &[String]) -> Outcome {
     println!("the published curves, against the values printed in table 2");
     let value = |row: usize, kind: DistributionKind| {
         let column = FITTED.iter().position(|fitted| *fitted == kind).map_or(0, |i| 3 + 2 * i);
-        // The m that was meant: the printed ones are rounded up.
+        // The unrounded m: the printed ones are rounded up.
         if column == 0 { rows[row][0].ours } else { rows[row][column].number() }
     };
     let known = |kind| kind == Beckmann || FITTED.contains(&kind);

@@ -1,5 +1,5 @@
 //! The equations of Ribardière et al. 2017 (doi:10.1111/cgf.13137) that define the distribution and
-//! sample it, in numbers. Those of masking, eq. 13–15 and 21–23, are the example
+//! sample it, in numbers. Those of masking, eq. 13–15 and 21–23, are in the study
 //! `printed_formulas`.
 //!
 //! `cargo run --release -p microfacet-study -- student_t_paper` prints them.
@@ -25,7 +25,7 @@ const MATERIALS: [([f64; 2], f64); 6] = [
     ([0.3, 0.3], f64::INFINITY),
 ];
 
-/// Prints what the module's page says.
+/// Runs the study that the module describes.
 pub fn run(_: &[String]) -> Outcome {
     println!(
         "Integral of D (m·n) over the hemisphere (eq. 11; eq. 18 where sigma differs), and p of"
@@ -104,7 +104,7 @@ fn draws(material: &StudentT, principal: bool, seed: u64) -> (f64, f64) {
     for _ in 0..DRAWS {
         let mut m = material.sample_ndf([rng.random(), rng.random()]);
         if principal && m.x < 0.0 {
-            // arctan(y/x) is the same for both.
+            // arctan(y/x) is the same for (−x, −y).
             (m.x, m.y) = (-m.x, -m.y);
         }
         leaning += usize::from(m.x < 0.0);

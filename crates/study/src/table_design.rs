@@ -1,5 +1,5 @@
-//! Why the table of visible slopes has its form: the largest CDF error of several designs of the
-//! same size.
+//! The design of the table of visible slopes: the largest CDF error of several designs of the same
+//! size.
 //!
 //! `cargo run --release -p microfacet-study -- table_design` prints the tables in the docs of
 //! `microfacet_baker::bake`. Every design of the first has 65 views by 2·17 random numbers, exact
@@ -129,8 +129,8 @@ impl Design {
 }
 
 /// The largest CDF error of linear interpolation between exact views, `cells` + 1 even nodes of a
-/// coordinate: in the middle of every cell and on either side of it. Peeled, the error counts by
-/// the share of the part that is left, 1 − M₀ sin θ/area.
+/// coordinate: in the middle of every cell and on either side of it. If `peeled`, the error is
+/// weighted by the share of the distribution that is left, 1 − M₀ sin θ/area.
 fn error_between_views(shape: &Shape, axis: HalfTangent, cells: usize, peeled: bool) -> f64 {
     let design = Design { stored: Stored::HalfTangent, view: View::HalfTangent, power: 4 };
     let slopes = |t: f64| {
@@ -181,7 +181,7 @@ fn print_views() {
     }
 }
 
-/// Prints what the module's page says.
+/// Runs the study that the module describes.
 pub fn run(_: &[String]) -> Outcome {
     print_head(&["stored", "view axis", "u", "γ = 1.8", "2", "4", "∞"]);
     for stored in [Stored::HalfTangent, Stored::GgxNumber] {

@@ -21,7 +21,7 @@ const BETWEEN: Duration = Duration::from_secs(60);
 
 pub(super) fn run(args: &Args, shard: Shard, scene: &Path, folder: &Path) -> Result<()> {
     let start = Instant::now();
-    // Fail now rather than after an hour of baking. Kept to the end: other shards use it.
+    // A folder that cannot be used fails before the bake. It is held, since other shards use it.
     let _folder = OutputFolder::open(folder)?;
     let cache = Cache::new(folder.to_path_buf());
     let kept = folder.display().to_string();
@@ -32,7 +32,7 @@ pub(super) fn run(args: &Args, shard: Shard, scene: &Path, folder: &Path) -> Res
     library.parts.iter().try_for_each(|part| args.check_bytes(&part.plan))?;
     let needs = library.needs(args.target())?;
     let receipt = Receipt::new(scene, shard, &needs);
-    // Said by the first shards, not by each of hundreds.
+    // Until a shard of the same needs has ended, so that not each of hundreds warns.
     let receipts = Receipts::read(folder, scene);
     if !receipts.has(&receipt) {
         for doubt in receipts.others(&receipt) {
@@ -84,7 +84,7 @@ pub(super) fn run(args: &Args, shard: Shard, scene: &Path, folder: &Path) -> Res
 pub(super) fn check(args: &Args, library: &Library, scene: &Path, cache: &Cache) -> Result<()> {
     let Some(folder) = cache.folder() else { return Ok(()) };
     let receipts = Receipts::read(folder, scene);
-    // A budget of bytes has no shards, and of a largest error a search alone tells what is there.
+    // A budget of bytes has no shards, and for a largest error only the search knows the needs.
     let Target::Quality(..) = args.target() else { return Ok(()) };
     if receipts.is_empty() && !args.only_kept {
         return Ok(());

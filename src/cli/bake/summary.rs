@@ -1,4 +1,4 @@
-//! What `bake` says when it is done.
+//! The summary that `bake` prints.
 
 use std::path::Path;
 
@@ -25,9 +25,8 @@ pub(super) struct Summary<'a> {
     pub(super) written: &'a [Written],
     /// The folder, as it was given.
     pub(super) out: &'a Path,
-    /// An image was asked for.
     pub(super) exr: bool,
-    /// Images of single tables were asked for, which are no set.
+    /// Images of single tables, which are no set.
     pub(super) split: bool,
     pub(super) seconds: f64,
 }
@@ -151,7 +150,7 @@ fn largest_errors(tables: &[Table]) -> String {
     let mut rows = Vec::new();
     for of in ["G1", "CDF of visible normals", "D/D(0)", "albedo"] {
         let tables = tables.iter().filter(|table| quantity(table.kind) == of);
-        // A NaN, and an error that was not measured, are the worst.
+        // NaN, and an error that was not measured, count as the largest.
         let largest =
             |table: &Table| table.certificate.largest().map_or(f64::NAN, |(_, largest)| largest);
         if let Some(table) = tables.max_by(|a, b| largest(a).total_cmp(&largest(b))) {

@@ -98,7 +98,7 @@ impl Args {
         let is_taken = |way: By| self.by.is_none_or(|by| by == way);
         let work = if is_taken(By::Rmse) { target.seconds(to) } else { 0.0 };
         let found: Vec<_> = watched("searching", work, |meter| {
-            // What each way gives; the published formulas are several.
+            // The replacements of each way; the published formulas may give several.
             let replace = |by| match by {
                 By::HalfAngle => vec![target.by_half_angle(to, self.shape).map(Line::plain)],
                 By::Rmse => {
@@ -134,7 +134,7 @@ impl Args {
                 // Without a choice, the ways that do not apply to this pair are left out.
                 Err(ConvertError::NoFormula(..) | ConvertError::ShapeNeeded(_))
                     if self.by.is_none() => {}
-                // Neither does one that fails take the others with it.
+                // A way that fails is reported after the others.
                 Err(why) => refusals.push((name, why)),
             }
         }
@@ -150,7 +150,7 @@ impl Args {
     }
 }
 
-/// A replacement, and what stands behind it.
+/// A replacement, with a remark on its source or its search.
 struct Line {
     found: Replacement,
     remark: String,
@@ -226,7 +226,7 @@ mod tests {
             ("--from trowbridge-reitz:0.9 --to beckmann --by half-angle", "use rmse"),
             ("--from gauss:2 --to beckmann --by formula", "eq. 13 gives"),
             ("--from gauss:2 --to beckmann --by formula", "use half-angle"),
-            // What no double holds.
+            // Values that overflow a double.
             ("--from student-t:1e300,2.5 --to beckmann --by rmse", "too large"),
             ("--from sawicki:1e300 --to gauss", "too large"),
         ] {
@@ -243,7 +243,7 @@ mod tests {
                 "beckmann:1.2 --to blinn-phong --by formula",
                 ["blinn-phong:1.388889", "none: Walter"],
             ),
-            // A formula beyond its fit says so.
+            // A formula beyond the range that it was fitted to.
             (
                 "beckmann:0.6 --to gauss --by formula",
                 ["gauss:", "eq. 13 (fitted to m = 0.004473 to 0.4473)"],

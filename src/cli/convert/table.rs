@@ -6,7 +6,7 @@ use microfacet_fit::convert::table::{COLUMNS, Value, rows};
 
 use crate::cli::{Result, watched};
 
-/// How long the search takes: `microfacet-bake convert --table` on two cores.
+/// Seconds of the search: of `microfacet-bake convert --table` on two cores.
 const SECONDS: f64 = 0.6;
 
 pub(super) fn text() -> Result<String> {
@@ -52,7 +52,7 @@ its error is the one of a grid that ends at 1.2, where the rest of the row ends 
 2/m_B^2: its error depends on digits of m that are not printed, and is off where N is 75 10^k.
 ";
 
-/// Columns that say what a row is of.
+/// The first columns, which are given for each row.
 const GIVEN: usize = 2;
 /// Widths of the columns, without the mark.
 const WIDTHS: [usize; 11] = [8, 7, 10, 9, 10, 9, 10, 9, 10, 9, 10];
@@ -88,7 +88,7 @@ mod tests {
             assert!(lines[2].as_bytes()[at + 3].is_ascii_digit(), "at {at} in\n{text}");
             assert!(lines[2].as_bytes().get(at + 4).is_none_or(|c| *c == b' '), "{text}");
         }
-        // The slip is marked and told.
+        // The misprint is marked and explained.
         let slip = lines.iter().position(|line| line.contains("0.01910")).unwrap();
         assert!(
             lines[slip - 1].contains("0.00191*") && text.contains("slip for 0.001910"),

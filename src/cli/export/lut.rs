@@ -125,7 +125,7 @@ fn layout() -> impl TypedValueParser<Value = &'static Layout> {
         .map(|name| Layout::find(&name.to_lowercase()).expect("one of those listed"))
 }
 
-/// The headers of C: a file of such a name would hide one, as `math.h` from itself.
+/// The headers of C: an exported file of the same name, such as `math.h`, would hide one.
 const HEADERS: &str = "assert complex ctype errno fenv float inttypes iso646 limits locale math \
                        setjmp signal stdalign stdarg stdatomic stdbit stdbool stdckdint stddef \
                        stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype";
@@ -200,7 +200,7 @@ fn of_family(args: &Args) -> Result<()> {
     Ok(())
 }
 
-/// What an engine reads.
+/// Textures in the layout of an engine.
 fn of_engine(layout: &Layout, args: &Args) -> Result<()> {
     let gamma = args.gamma.unwrap_or(2.0);
     let size = args.size.as_ref().map_or(&layout.size[..], |size| &size.0);

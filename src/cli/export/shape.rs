@@ -34,7 +34,7 @@ pub(super) struct ShaderArgs {
     textures: bool,
 }
 
-/// The size of textures that every device of WebGL 2 has.
+/// Rows of a texture that every device of WebGL 2 supports.
 const PROMISED_ROWS: usize = 2048;
 
 pub(super) fn shader(language: Language, args: &ShaderArgs) -> Result<()> {

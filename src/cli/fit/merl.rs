@@ -21,7 +21,7 @@ pub(super) fn run(files: &[PathBuf], recipe: Option<&Path>) -> Result<()> {
     let work = files.len() as f64 * Fitter::SECONDS;
     let found = watched("fitting", work, |meter| -> Result<_> {
         let fitter = Fitter::default();
-        // A file that is refused is so before others have taken their time.
+        // All files are checked before the first fit, which takes long.
         for path in files.iter().filter(|_| files.len() > 1) {
             let check = || fitter.check(&Measured::read(path)?);
             check().with_context(|| path.display().to_string())?;
@@ -58,7 +58,7 @@ fn head(width: usize) -> String {
     )
 }
 
-/// The errors and parameters of a material, and below it the rest of its Student-t.
+/// The row of a material, and below it the other parameters of its Student-t.
 fn rows(name: &str, width: usize, fits: &Comparison) -> Result<String, std::fmt::Error> {
     let Comparison { beckmann, ggx, student_t } = fits;
     let [sigma, gamma] = student_t.sigma_gamma().map(short);

@@ -10,8 +10,7 @@ use crate::cli::{Result, anyhow, note};
 const SIGMAS: [f64; 7] = [0.01, 0.1, 0.3, 0.6, 1.0, 2.0, 3.0];
 const GAMMAS: [f64; 8] = [1.501, 1.6, 2.0, 3.0, 5.0, 10.0, 40.0, f64::INFINITY];
 
-/// Pairs of σ and γ, by γ. Where a list is empty, the grid stands for it, as far as the set covers
-/// it.
+/// Pairs of σ and γ, by γ. An empty list stands for the values of the grid that the set covers.
 ///
 /// # Errors
 /// A named σ or γ that the set does not cover.

@@ -31,7 +31,7 @@ pub(super) fn of(set: &Tables) -> String {
         text += &wrapped(&format!("  {}: ", escape::line(key)), &escape::line(value), 4);
     }
     if !origin.materials.is_empty() {
-        // Indented, so that no line of it passes for one of ours.
+        // Indented, so that no line of the recipe is taken for a line of this command.
         text += "\nrecipe\n";
         for line in recipe_of(&origin.materials).lines() {
             text += &format!("  {line}\n");

@@ -41,7 +41,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     if args.json {
         let mut document: serde_json::Value =
             serde_json::from_str(&describe(set.provenance(), set.tables())?)?;
-        // It is a checksum of a file's bytes, and there may be many files.
+        // The checksum is of the bytes of one file, and a set may have several.
         if let Some(document) = document.as_object_mut() {
             document.remove("checksum");
         }
@@ -104,7 +104,7 @@ fn head(name: &str, set: &Tables, all: bool) -> String {
     text + &listed("albedo", &albedos(tables), shown)
 }
 
-/// A list below each other, its end cut off.
+/// One entry a line; entries after the first `shown` are only counted.
 fn listed(name: &str, lines: &[String], shown: usize) -> String {
     let mut name = Some(name);
     let line = |line: &String| entry(name.take().unwrap_or(""), &escape::line(line));

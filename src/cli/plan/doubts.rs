@@ -1,5 +1,4 @@
-//! What is said last: what was assumed of a scene, and the materials for which nothing could be
-//! done.
+//! Final warnings: what was assumed of a scene, and the materials for which nothing could be done.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +8,7 @@ use microfacet_baker::scene::Scene;
 use crate::cli::report;
 use crate::cli::words::{count, joined, list};
 
-/// Reasons that are told; `--json` has all.
+/// Reasons that are listed; `--json` has all.
 const SHOWN: usize = 3;
 
 /// Materials for which nothing could be done for one reason.
@@ -54,7 +53,7 @@ impl<'a> Reasons<'a> {
         all
     }
 
-    /// A sentence of all, if there are any: "3 materials", and `one` or `many` of them.
+    /// A sentence on all, if there are any: "3 materials", followed by `one` or `many`.
     fn sentence(&self, [one, many]: [&str; 2]) -> Option<String> {
         let reasons = self.by_number();
         let all: usize = reasons.iter().map(|(_, lost)| lost.names.len()).sum();
@@ -81,7 +80,7 @@ pub(in crate::cli) fn warn<'a>(parts: impl Iterator<Item = (&'a Scene, &'a Plan)
     warn_of_lost(parts);
 }
 
-/// The same after long work that began with the warnings of the scene: they are counted only.
+/// [`warn()`] after long work that began with the warnings of the scene: these are only counted.
 pub(in crate::cli) fn remind<'a>(parts: impl Iterator<Item = (&'a Scene, &'a Plan)> + Clone) {
     let warnings: usize = parts.clone().map(|(scene, _)| scene.warnings.len()).sum();
     if warnings > 0 {

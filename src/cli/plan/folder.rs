@@ -28,7 +28,7 @@ const WARNINGS: usize = 5;
 pub(super) fn run(args: &Args) -> Result {
     let start = Instant::now();
     let request: &Request = &args.request;
-    // Of folders below, the summary says which could not be read.
+    // The summary names the folders below that could not be read.
     let folder = args.scene.display();
     read_dir(&args.scene)
         .map_err(|why| Failure::msg(format!("{folder}: cannot be read: {why}")))?;
@@ -55,10 +55,10 @@ pub(super) fn run(args: &Args) -> Result {
     Ok(Done::judged(!(request.is_strict() && survey.files.iter().any(is_refused))))
 }
 
-/// Names of what is counted, with how often it was.
+/// Counts by name.
 type Counts<'a> = BTreeMap<&'a str, usize>;
 
-/// Files by what became of them, in the order in which they are told.
+/// Numbers of files by outcome, in the order of the summary.
 fn outcomes(survey: &Survey) -> [(&'static str, &'static str, usize); 4] {
     let number = |of: fn(&Outcome) -> bool| survey.files.iter().filter(|f| of(&f.outcome)).count();
     [
@@ -213,7 +213,7 @@ fn json(survey: &Survey, time: f64) -> Value {
     })
 }
 
-/// What is said last.
+/// The final warnings.
 fn warn(survey: &Survey) {
     let refused = survey.files.iter().filter(|it| matches!(it.outcome, Outcome::Refused(_)));
     let refused: Vec<String> = refused.map(|file| file.path.display().to_string()).collect();

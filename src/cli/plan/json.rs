@@ -25,7 +25,7 @@ impl Outline<'_> {
                 }
                 _ => None,
             };
-            // Without the name, which is the scene's.
+            // The name is that of the scene.
             let MaterialEntry {
                 lobe: LobeSpec { distribution, theta, .. }, masking, fresnel, ..
             } = entry(material);

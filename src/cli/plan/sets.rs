@@ -26,7 +26,7 @@ pub(super) fn run(args: &Args, library: &Library, [reading, planning]: [Duration
         let [reading, planning] = milliseconds;
         let milliseconds = json!({ "reading": reading, "planning": planning });
         let (needs, time) = (json!(needs.len()), json!(time));
-        // One set at a time: together they would take more memory than all else.
+        // One set at a time: all together would take more memory than the rest of the command.
         let head = format!(
             "{{\n\"needs\": {needs},\n\"seconds\": {time},\n\"milliseconds\": {milliseconds},\n\"sets\": ["
         );
@@ -68,7 +68,7 @@ pub(super) fn run(args: &Args, library: &Library, [reading, planning]: [Duration
     Ok(Done::Ok)
 }
 
-/// Core seconds of a shard that is neither lost in planning nor long to repeat.
+/// Core seconds of a shard: long compared with its planning, and short enough to repeat.
 const SHARD: f64 = 1800.0;
 
 /// How several processes share the work, where it is more than one shard of half an hour.

@@ -1,4 +1,4 @@
-//! What a plan does for each material, in words: one home for what `plan` and `bake` say.
+//! What a plan does for each material, in the words of both `plan` and `bake`.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -70,7 +70,6 @@ pub(super) enum Tables<'a> {
 }
 
 impl Part<'_> {
-    /// Number of tables.
     fn count(&self) -> usize {
         match &self.tables {
             Tables::Shapes(_, specs) => specs.len(),
@@ -79,7 +78,7 @@ impl Part<'_> {
         }
     }
 
-    /// What it is of, and more on what its tables hold.
+    /// What a part is of, and more on what its tables hold.
     fn what(&self) -> [String; 2] {
         match &self.tables {
             Tables::Shapes(need, _) => [shapes(need.gamma()), String::new()],
@@ -93,7 +92,7 @@ impl Part<'_> {
         }
     }
 
-    /// Bytes and seconds in words; the bytes of what may be refined are not known.
+    /// Bytes and seconds in words; the bytes of tables that may be refined are estimates.
     pub(super) fn cost(&self) -> String {
         let Cost { bytes, seconds } = self.cost;
         let size = match &self.tables {
@@ -116,7 +115,7 @@ fn offer(
     if plan.offered.is_empty() {
         return None;
     }
-    // What no table can hold is refused where it is asked for.
+    // Albedos that no table can hold are refused when they are requested.
     let specs = plan.offered.iter().map(|need| need.spec(quality, precision));
     let tables = specs.map(|spec| spec.map(|spec| spec.tables())).sum::<Result<_, _>>().ok()?;
     let with = Plan { albedos: plan.offered.clone(), ..plan.clone() };
@@ -159,7 +158,7 @@ impl<'a> Outline<'a> {
         for (material, (verdict, albedo)) in scene.materials.iter().zip(verdicts) {
             let own = |known: &Distribution| material.lobe.distribution.as_ref() == Some(known);
             let own = match verdict {
-                // A scene has a thousand distributions at most.
+                // A linear search: a scene has a thousand distributions at most.
                 Verdict::Own => plan.distributions.iter().position(own).map(|i| first[0] + i),
                 _ => None,
             };
@@ -200,7 +199,7 @@ impl<'a> Outline<'a> {
     /// All that is not baked, and why.
     fn skipped(&self) -> Vec<Skipped<'a>> {
         let Self { scene, plan, .. } = self;
-        // In this order, and then by the alphabet.
+        // Sorted by rank, then by the alphabet.
         let mut all: BTreeMap<(usize, [Cow<'a, str>; 2]), Vec<&'a str>> = BTreeMap::new();
         let mut add = |rank, why, name| all.entry((rank, why)).or_default().push(name);
         for (material, verdict) in scene.materials.iter().zip(&plan.verdicts) {

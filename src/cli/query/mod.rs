@@ -84,13 +84,13 @@ pub(super) fn run(args: &Args) -> Result<()> {
 const ROWS: usize = 256;
 const BYTES: u64 = 2 * MAX_ROW;
 
-/// Seconds for a byte of input, about; only its share of the whole counts.
+/// Approximate seconds for a byte of input; only the share of the whole counts.
 const SECONDS: f64 = 1e-6;
 
 /// Passes the rows of a file through, with the quantity's values appended.
 fn answer(io: &Io, quantity: Quantity, known: &Known) -> Result<()> {
     let path = || shown(&io.input).to_string();
-    // A stream of any length, as long as its rows end.
+    // The length of a stream is not limited, but that of a row is.
     let input = open_or_stdin(&io.input, u64::MAX).with_context(path)?;
     let mut rows = Rows::new(input, None).with_context(path)?;
     let empty = || format!("{}: it is empty; the first row must name the columns", path());

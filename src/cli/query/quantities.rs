@@ -27,7 +27,7 @@ pub(super) enum Quantity {
 }
 
 impl Quantity {
-    /// The columns that it reads, and those that it appends, each with the method behind it.
+    /// The columns that a quantity reads, and those that it appends, each followed by the method.
     pub(super) fn columns(self) -> [&'static [&'static str]; 2] {
         match self {
             Self::G1 => [&["sigma_x", "sigma_y", "gamma", "theta", "phi"], &["lambda", "g1"]],
@@ -52,7 +52,7 @@ pub(super) struct Known {
     integrators: Mutex<HashMap<u64, Arc<model::AlbedoIntegrator>>>,
 }
 
-/// Error aimed at by the model's albedos.
+/// Tolerance of the model's albedos.
 const EXACT: f64 = 1e-10;
 /// Number of shapes whose integrators are kept; repeated rows of one shape are then computed twice
 /// as fast.
@@ -73,7 +73,7 @@ impl Known {
         }
     }
 
-    /// What a reader should know who compares the two methods in a row; printed once.
+    /// A note on a row whose two methods cannot be compared directly; printed once.
     pub(super) fn note(&self, fields: &[&str]) -> Option<String> {
         if self.quantity != Quantity::Normal {
             return None;
@@ -91,8 +91,8 @@ impl Known {
         })
     }
 
-    /// What in a row looks like a mistake, though it can be computed; printed once: an azimuth in
-    /// another unit.
+    /// A warning of a probable mistake in a row that can be computed: an azimuth in another unit.
+    /// Printed once.
     pub(super) fn doubt(&self, fields: &[&str]) -> Option<String> {
         let [names, _] = self.quantity.columns();
         let phi = fields[names.iter().position(|name| *name == "phi")?];
@@ -224,7 +224,7 @@ fn masking(fields: &[&str]) -> Result<Masking> {
     text.parse().map_err(|why| anyhow!("masking \"{text}\": {why}"))
 }
 
-/// A number with all its digits, by powers of ten where zeros would fill the line.
+/// A number with all its digits, with an exponent if it is very small or very large.
 fn text<T: Copy + Into<f64> + Display + LowerExp>(x: T) -> String {
     match x.into().abs() {
         1e-9..1e15 | 0.0 => x.to_string(),

@@ -1,8 +1,8 @@
 //! Compares exported shapes, compiled as C and as C++, with the Rust crate: at random points, at
 //! corners, and with the rows of `docs/reference.csv`; then times both in turns.
 //!
-//! `clients/c/run` exports the shapes and starts it: with the number of random points and the path
-//! of the rows as arguments. Exit status 1 if something differs by more than is allowed.
+//! `clients/c/run` exports the shapes and starts this program with the number of random points and
+//! the path of the rows as arguments. Exit status 1 if something differs by more than is allowed.
 
 mod foreign;
 mod timing;
@@ -12,7 +12,7 @@ use std::process::ExitCode;
 use microfacet_sampler::Tables;
 use student_t_agreement::{Limits, Rough, agree};
 
-/// What the page of exports promises.
+/// The limits that the documentation of exports states.
 const LIMITS: Limits = Limits {
     share: 2e-6,
     normal: 1e-5,

@@ -1,4 +1,4 @@
-//! How long the exported functions take, in relation to the crate's, in turns.
+//! Times of the exported functions in relation to the crate's, measured in turns.
 
 use std::f32::consts::TAU;
 use std::hint::black_box;
@@ -61,7 +61,7 @@ fn ratios(lobe: &impl MicrofacetDistribution, tables: &Tables, shape: usize, gam
             }
         }));
     }
-    // The least of each, which is what other programs disturb least.
+    // The least time of each, which other programs disturb least.
     let least = |times: Vec<f64>| times.into_iter().fold(f64::INFINITY, f64::min);
     let [c, rust, c_g1, rust_g1, c_lobe, rust_lobe] = times.map(least);
     let (normal, masking, lobe) = (c / rust, c_g1 / rust_g1, c_lobe / rust_lobe);

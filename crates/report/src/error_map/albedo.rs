@@ -11,23 +11,23 @@ use microfacet_tables::{Axis, Kind, Mapping, Provenance, Table};
 
 use super::{Place, Quantity, Span, Unmeasured};
 
-/// Error of a node, as a share of the table's largest; between those of high quality and a draft.
+/// Tolerance of a node as a share of the table's largest error, and its limits.
 const FINE: f64 = 1.0 / 300.0;
 const TOLERANCES: [f64; 2] = [1e-7, 1e-5];
 
-/// The specification of a directional table, with an accuracy that its errors ask for.
+/// The specification of a directional table, with a tolerance that follows from the table's errors.
 pub(crate) fn spec(table: &Table) -> Option<AlbedoSpec> {
     let [least, most] = TOLERANCES;
     AlbedoSpec::of_table(table, (FINE * table.certificate.worst()).clamp(least, most))
 }
 
 pub(super) struct Albedos<'a> {
-    /// The directional ones.
+    /// Directional albedos.
     table: &'a Table,
-    /// The averages alone, if it is their errors that are measured.
+    /// A set of the averages alone, if their errors are measured.
     averages: Option<Tables>,
     spec: AlbedoSpec,
-    /// Of materials, and of the view unless averages are measured.
+    /// Axes of the material, and of the view unless averages are measured.
     spans: Vec<Span>,
 }
 
@@ -48,7 +48,7 @@ impl<'a> Albedos<'a> {
         let axes = of_material.iter().enumerate();
         let mut spans: Vec<Span> = axes.map(|(i, axis)| material(&spec, i, axis.clone())).collect();
         if averages.is_none() {
-            // Views are spaced as for the material of the largest error.
+            // Views are spaced as the table spaces them for the material of the largest error.
             let at = coordinates(&spec, spans.iter().map(|span| span.worst(table).unwrap_or(0.5)));
             let views = promised_views(view, Site::new(&spec.axes, &at));
             spans.push(Span::new(Quantity::Cosine, views));
@@ -79,7 +79,7 @@ impl super::Ruler for Albedos<'_> {
     }
 }
 
-/// The axis of a material over the range that is promised; γ ascends.
+/// An axis of the material over the range that the certificate promises; γ ascends.
 fn material(spec: &AlbedoSpec, i: usize, axis: Axis) -> Span {
     let ends = {
         let range = &ranges(spec)[i];

@@ -1,4 +1,4 @@
-//! Which axes a map shows, and at how many places it is measured.
+//! Which axes a map shows, and at how many points it is measured.
 
 use microfacet_baker::plan;
 use microfacet_tables::{Axis, Interpolation, Kind, Table};
@@ -6,7 +6,7 @@ use microfacet_tables::{Axis, Interpolation, Kind, Table};
 use super::albedo::spec;
 use super::{AXES, Place, Quantity, Span};
 
-/// The axes that a map shows, by their place in the table.
+/// The axes that a map shows, by their index in the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sides {
     /// Along x.
@@ -18,18 +18,18 @@ pub struct Sides {
 /// Most pixels along x and y, and along x alone.
 const PIXELS: [usize; 2] = [48, 32];
 const ALONE: usize = 96;
-/// Fewest pixels along either.
+/// Fewest pixels along x, and along y.
 const FEWEST: usize = 6;
-/// Places in each cell of an axis, where there is time for so many.
+/// Points in each cell of an axis, if [`LIMIT`] allows them.
 const IN_CELL: f64 = 2.5;
-/// Most places in a pixel along an axis.
+/// Most points in a pixel along an axis.
 const IN_PIXEL: usize = 4;
-/// Places along axes of which the largest error is shown: random numbers, and views of albedos.
+/// Points along an axis over which the largest error is taken: of other tables, and of albedos.
 const OVER: [usize; 2] = [41, 6];
 /// Seconds of one thread that a map may take.
 const LIMIT: f64 = 1.5;
 
-/// Pairs of quantities for y and x, the first that a table has for the map that says most of it.
+/// Quantities for y and x of the first map, by priority: a table gets the first pair that it has.
 const FIRST: [(Quantity, Quantity); 9] = [
     (Quantity::Sigma, Quantity::Cosine),
     (Quantity::Azimuth, Quantity::Cosine),
@@ -41,14 +41,14 @@ const FIRST: [(Quantity, Quantity); 9] = [
     (Quantity::Number, Quantity::Slope),
     (Quantity::Gamma, Quantity::Sigma),
 ];
-/// The same for a second map.
+/// Pairs of quantities for y and x of a second map.
 const SECOND: [(Quantity, Quantity); 3] = [
     (Quantity::Gamma, Quantity::Sigma),
     (Quantity::Eta, Quantity::Sigma),
     (Quantity::Number, Quantity::Cotangent),
 ];
 
-/// The maps that a table has: the one that says most of it, and perhaps another.
+/// The axes of a table's maps, at most two; none if errors change along no axis.
 pub fn sides(table: &Table) -> Vec<Sides> {
     let of = |quantity: Quantity| {
         table.axes.iter().position(|axis| moves(axis) && Quantity::of(axis) == quantity)
@@ -65,7 +65,7 @@ pub fn seconds(table: &Table, sides: Sides) -> f64 {
     Layout::new(table, sides).counts.iter().product::<usize>() as f64 * point_seconds(table)
 }
 
-/// Seconds of one thread to measure the error of a table at one place.
+/// Seconds of one thread to measure the error of a table at one point.
 fn point_seconds(table: &Table) -> f64 {
     match table.kind {
         Kind::Albedo => spec(table).map_or(0.0, |spec| plan::place_seconds(&spec)),
@@ -73,19 +73,19 @@ fn point_seconds(table: &Table) -> f64 {
     }
 }
 
-/// Whether errors change along an axis: not along a list of single shapes.
+/// Whether errors change along an axis; they do not along a list of single shapes.
 fn moves(axis: &Axis) -> bool {
     axis.nodes.len() > 1 && axis.interpolation != Interpolation::Nodes
 }
 
-/// Numbers of pixels, and of places along each axis.
+/// Numbers of pixels, and of points along each axis.
 pub(super) struct Layout {
     sides: [Option<usize>; 2],
-    /// Along x and y, and how many places each has along either.
+    /// Pixels along x and y; `each` is the number of points in a pixel along x and y.
     pub(super) pixels: [usize; 2],
     each: [usize; 2],
     counts: [usize; AXES],
-    /// The axes that are not shown and stay at a value, and those of the largest error.
+    /// Axes that are not shown: they stay at one value, or the largest error over them is taken.
     pub(super) fixed: Vec<usize>,
     pub(super) over: Vec<usize>,
 }
@@ -128,12 +128,12 @@ impl Layout {
         Self { sides, pixels, each, counts, fixed, over }
     }
 
-    /// The number of places that share the first axis.
+    /// The number of successive points with one value of the first axis.
     pub(super) fn run(&self) -> usize {
         self.counts[1..].iter().product()
     }
 
-    /// All places with their pixels, row by row from the low end of y; the last axis fastest.
+    /// All points with their pixels' numbers, row by row from low y; the last axis is fastest.
     pub(super) fn places(&self, table: &Table, spans: &[Span]) -> Vec<(Place, usize)> {
         let mut all: Vec<(Place, usize)> = vec![([0.0; AXES], 0)];
         for axis in 0..AXES {
@@ -144,7 +144,7 @@ impl Layout {
         all
     }
 
-    /// A place at each of some shares of one more axis.
+    /// Copies of a point, one at each share of one more axis.
     fn extended<'a>(
         &self,
         (place, pixel): (Place, usize),
@@ -160,8 +160,8 @@ impl Layout {
         })
     }
 
-    /// Even shares of an axis with both ends, the nearest to the certificate's largest error moved
-    /// there; that place or the middle alone of an axis that stays at a value.
+    /// Equally spaced shares of an axis, both ends included; the one nearest to the certificate's
+    /// largest error is moved to it. An axis with one point has it at that error, or in the middle.
     fn along(&self, axis: usize, worst: Option<f64>) -> Vec<f64> {
         let count = self.counts[axis];
         if count == 1 {
@@ -169,7 +169,7 @@ impl Layout {
         }
         let mut all: Vec<f64> = (0..count).map(|i| i as f64 / (count - 1) as f64).collect();
         if let Some(worst) = worst {
-            // Within the pixel that it lies in.
+            // The share that is moved stays in the pixel of the largest error.
             let side = self.sides.iter().position(|side| *side == Some(axis));
             let each = side.map_or(1, |i| self.each[i]);
             let first = (worst * (count / each) as f64) as usize * each;

@@ -1,9 +1,9 @@
-//! Where the errors of a table are: its certificate's errors over two of its axes, measured anew.
+//! Maps of a table's errors over two of its axes: the errors of its certificate, measured again.
 //!
-//! A map shows the part of a table that its certificate promises errors for. Each pixel is the
-//! largest of some errors within it: along the axes that are shown, and along those of views and
-//! random numbers that are not. Axes of materials that are not shown stay at the place of the
-//! certificate's largest error. Views are spaced as the table spaces them there.
+//! A map covers the range that the certificate promises errors for. Each pixel is the largest error
+//! measured in it: along the axes that are shown, and along the axes of views and random numbers
+//! that are not. An axis of the material that is not shown stays at the value of the certificate's
+//! largest error, and views are spaced as the table spaces them for that material.
 
 mod albedo;
 mod layout;
@@ -22,7 +22,7 @@ use layout::Layout;
 pub use layout::{Sides, seconds, sides};
 pub use span::{Quantity, Span};
 
-/// Shares of the axes of a table, the last axes unused where it has fewer.
+/// A point of a table, as shares of its axes; the components beyond them are unused.
 type Place = [f64; AXES];
 const AXES: usize = 4;
 
@@ -36,18 +36,18 @@ pub struct ErrorMap {
     pub columns: usize,
     /// The largest error in each pixel, row by row from the low end of y; NaN where one is NaN.
     pub errors: Vec<f64>,
-    /// Number of places measured.
+    /// Number of points measured.
     pub points: usize,
     /// Axes that are not shown and stay at a value.
     pub fixed: Vec<(Quantity, f64)>,
     /// Axes that are not shown, over which each pixel is the largest error.
     pub over: Vec<Quantity>,
-    /// The place of the certificate's largest error, as shares of x and y, if the map has it.
+    /// The point of the certificate's largest error, as shares of x and y, if the map contains it.
     pub worst: Option<[f64; 2]>,
 }
 
 impl ErrorMap {
-    /// The largest error; NaN if one is.
+    /// The largest error; NaN if any is NaN.
     pub fn largest(&self) -> f64 {
         self.errors.iter().copied().fold(0.0, worse)
     }
@@ -65,13 +65,13 @@ pub enum Unmeasured {
     /// The distribution is not known by its name alone.
     #[error(transparent)]
     Distribution(#[from] DistributionError),
-    /// The set does not make the lobe.
+    /// The set cannot make the lobe.
     #[error(transparent)]
     Material(#[from] MaterialError),
     /// The tables do not make a set.
     #[error(transparent)]
     Load(#[from] LoadError),
-    /// The model has no such albedo.
+    /// The model does not have the albedo.
     #[error(transparent)]
     Albedo(#[from] AlbedoError),
 }
@@ -81,15 +81,16 @@ trait Ruler {
     /// The axes of the table, in its order.
     fn spans(&self) -> &[Span];
 
-    /// The errors at places, which share the first axis in runs of `run`.
+    /// The errors at points; each `run` successive points have one value of the first axis.
     fn errors(&self, places: &[Place], run: usize, stage: &Stage) -> Result<Vec<f64>, Unmeasured>;
 }
 
-/// Measures the errors of a table of this set over some of its axes, on all threads; each place is
+/// Measures the errors of a table of this set over some of its axes, on all threads; each point is
 /// a step of the stage.
 ///
 /// # Errors
-/// [`Unmeasured`] if the set lacks what the table is read with, or the model what it is of.
+/// [`Unmeasured`] if the set lacks a table that is read together with this one, if no axis has
+/// errors to show, or if the model lacks the distribution or the albedo.
 pub fn measure(
     set: &Tables,
     table: &Table,
@@ -108,7 +109,7 @@ pub fn measure(
     }
     let worst = |axis: usize| spans[axis].worst(table);
     let y = sides.y.map_or(Some(0.5), worst);
-    // An axis of one value says nothing of the map.
+    // An axis of one node has no other value.
     let fixed = layout.fixed.iter().filter(|&&i| table.axes[i].nodes.len() > 1);
     Ok(ErrorMap {
         columns: layout.pixels[0],
@@ -134,7 +135,7 @@ fn ruler<'a>(set: &'a Tables, table: &'a Table) -> Result<Box<dyn Ruler + 'a>, U
     })
 }
 
-/// The larger error; a NaN is the worst.
+/// The larger error; NaN counts as larger than any number.
 fn worse(a: f64, b: f64) -> f64 {
     if b > a || b.is_nan() { b } else { a }
 }

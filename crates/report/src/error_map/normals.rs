@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::{Place, Quantity, Span, Unmeasured};
 
-/// A table with those that a lobe is made of together with it.
+/// A table, with the other tables that a lobe is read from together with it.
 pub(super) struct Normals {
     /// Its first table is the one to measure.
     set: Tables,
@@ -75,13 +75,13 @@ fn ruler(set: &Tables) -> Ruler<'_> {
     Ruler::new(set, table, table.subject.lobe.s())
 }
 
-/// The share of s at which γ is at this share: γ ascends along an axis of a map.
+/// The share along s for a share along γ: γ ascends along an axis of a map, and s falls as γ rises.
 fn ascending(share: f64) -> f64 {
     1.0 - share
 }
 
-/// The table, and those of other kinds that a lobe is read from with it. With another of its own
-/// kind it would be open which one is read.
+/// The table, and tables of other kinds that a lobe is read from together with it. A second table
+/// of its own kind is left out, since a lobe might be read from that one.
 fn with_others(set: &Tables, table: &Table) -> Vec<Table> {
     let overlaps = |other: &Table| {
         let [a, b] = [other, table].map(|table| table.subject.lobe.gamma);

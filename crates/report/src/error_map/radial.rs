@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::{Place, Quantity, Span, Unmeasured};
 
-/// The tables of one distribution, and one of them.
+/// One table of a distribution outside the family, with the lobe that all its tables make.
 pub(super) struct Radial<'a> {
     table: &'a Table,
     lobe: Lobe,
@@ -34,7 +34,7 @@ impl<'a> Radial<'a> {
             Quantity::Number => Span::of_numbers(axis),
             other => {
                 let (axis, part) = (axis.clone(), read(table.kind, axis));
-                // Without a γ axis s is 1.
+                // s = 1, since the tables have no axis of γ.
                 Span::new(other, move |share| cotangent(&axis, 1.0, part * share))
             }
         };

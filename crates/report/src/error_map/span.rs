@@ -6,7 +6,7 @@ use microfacet_baker::certify::certificate::number;
 use microfacet_core::shape::gamma_of_s;
 use microfacet_tables::{Axis, Coordinate, Mapping, Table};
 
-/// What an axis of a table is of.
+/// The quantity along an axis of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// The shape γ.
@@ -28,7 +28,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// What an axis is of.
+    /// The quantity along an axis.
     pub fn of(axis: &Axis) -> Self {
         match axis.mapping {
             Mapping::InverseShape | Mapping::LogShape(_) => Self::Gamma,
@@ -42,12 +42,12 @@ impl Quantity {
         }
     }
 
-    /// Whether it is of a material, rather than of a view or a random number.
+    /// Whether the quantity belongs to the material, not to the view or to a random number.
     pub fn is_of_material(self) -> bool {
         matches!(self, Self::Gamma | Self::Sigma | Self::Eta | Self::Azimuth)
     }
 
-    /// Its value where the certificate of a table has its largest error.
+    /// The value at the largest error of a table's certificate, if it is stated.
     pub fn worst(self, table: &Table) -> Option<f64> {
         let figure = |of| table.certificate.at.get(&of).copied();
         match self {
@@ -56,7 +56,7 @@ impl Quantity {
             Self::Eta => figure(Coordinate::Eta),
             Self::Azimuth => figure(Coordinate::Phi).map(f64::to_degrees),
             Self::Cosine => figure(Coordinate::Cosine),
-            // An infinite one is no figure of a certificate.
+            // Certificates state no infinite cotangent: with s but without a cotangent it is ∞.
             Self::Cotangent => figure(Coordinate::Cotangent)
                 .or_else(|| figure(Coordinate::S).map(|_| f64::INFINITY)),
             Self::Number => figure(Coordinate::U),
@@ -68,12 +68,12 @@ impl Quantity {
 /// A quantity along an axis of a map, ascending or descending.
 #[derive(Clone)]
 pub struct Span {
-    /// What it is.
+    /// The quantity along the axis.
     pub quantity: Quantity,
     at: Arc<dyn Fn(f64) -> f64 + Send + Sync>,
 }
 
-/// Values that differ by no more than this share are the same, after a coordinate and its inverse.
+/// Relative difference up to which values are equal: the rounding of a coordinate and its inverse.
 const SAME: f64 = 1e-6;
 
 impl Span {
@@ -96,7 +96,7 @@ impl Span {
     pub fn fraction(&self, value: f64) -> Option<f64> {
         if self.quantity == Quantity::Azimuth {
             let first = self.value(0.0);
-            // Of a full turn less rounding, the beginning is meant.
+            // A full turn less rounding is the beginning of the axis.
             let beyond = (value - first).rem_euclid(360.0);
             return self.within(if beyond > 360.0 - 1e-6 { first } else { first + beyond });
         }
@@ -113,7 +113,7 @@ impl Span {
         let same = |end: f64| {
             end == value || value.is_finite() && (end - value).abs() <= SAME * value.abs()
         };
-        // Before all others, for an axis of one value is both.
+        // Ends come first: an axis of one value has both ends at that value.
         if let Some(end) = [(first, 0.0), (last, 1.0)].into_iter().find(|(end, _)| same(*end)) {
             return Some(end.1);
         }
@@ -123,7 +123,7 @@ impl Span {
         if !is_before(low) || is_before(high) {
             return None;
         }
-        // To the last bit but a few.
+        // 52 halvings reach the precision of f64.
         for _ in 0..52 {
             let middle = 0.5 * (low + high);
             if is_before(middle) { low = middle } else { high = middle }
@@ -146,7 +146,7 @@ mod tests {
                 assert!((back - share).abs() < 1e-9, "{share}: {back}");
             }
         }
-        // Neither is the end where it is infinite.
+        // Finite values are found on an axis that ends at ∞.
         assert!((up.fraction(1.0).unwrap() - 0.5).abs() < 1e-9);
         assert!((down.fraction(2.0).unwrap() - 0.5).abs() < 1e-9);
         assert_eq!([up.fraction(f64::INFINITY), down.fraction(f64::INFINITY)], [Some(1.0); 2]);

@@ -9,14 +9,14 @@ use crate::plot::{Axis, Curve, Drawing, Figure, HeatMap, Key, Mark, Panel};
 
 /// The low end of the scale: about the rounding of single precision.
 const LOW: f64 = 1e-7;
-/// The least high end.
+/// The high end of the scale is at least this.
 const HIGH: f64 = 1e-4;
 const LABEL: &str = "largest error";
 
 /// The scale that all maps of a page share: up to the next power of ten after the largest error.
 pub(super) fn scale(largest: impl Iterator<Item = f64>) -> Axis {
     let high = largest.filter(|x| x.is_finite()).fold(HIGH, f64::max);
-    // Rounding must not add a decade. The last one of doubles ends below its power of ten.
+    // log10 may round up, which must not add a decade. `f64::MAX` is below the next power of ten.
     let decade = libm::exp10((libm::log10(high) - 1e-9).ceil());
     Axis::log(LABEL, LOW, decade.min(f64::MAX))
 }
@@ -43,7 +43,7 @@ pub(super) fn drawn(table: &Table, map: &ErrorMap, scale: &Axis) -> String {
 fn curve(map: &ErrorMap, x: Axis, y: Axis) -> Drawing {
     let key = Key::TABLE;
     let last = (map.columns - 1).max(1) as f64;
-    // What is smaller than the scale's low end is rounding.
+    // Errors below the low end of the scale are rounding.
     let error = |x: f64| if x < LOW { LOW } else { x };
     let points = map.errors.iter().enumerate().map(|(i, &x)| (i as f64 / last, error(x)));
     let curve = Curve::new(key, "", points);

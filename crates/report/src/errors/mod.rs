@@ -1,4 +1,4 @@
-//! Where the errors of tables are: heat maps over their axes, of errors measured anew.
+//! Heat maps of tables' errors over their axes, measured again for the page.
 
 mod drawing;
 mod ticks;
@@ -17,7 +17,7 @@ use crate::error_map;
 use crate::error_map::{ErrorMap, Sides, Unmeasured, measure, sides};
 use crate::plot::{Axis, bar};
 
-/// Most tables without a map whose certificates are said in words.
+/// Most tables without a map whose certificates are stated in words.
 const IN_WORDS: usize = 12;
 
 /// Most maps of a page.
@@ -33,7 +33,7 @@ struct Chosen<'a> {
 }
 
 impl<'a> Chosen<'a> {
-    /// The first map of each table before the second of any, those of large errors before others.
+    /// First maps of tables come before second ones, larger certified errors before smaller ones.
     fn of(set: &'a Tables) -> Self {
         let tables = set.tables();
         let mut all: Vec<(usize, usize, Sides)> = Vec::new();

@@ -45,7 +45,7 @@ fn progress_ends_when_the_section_does_and_its_estimate_is_of_the_right_size() {
     let start = Instant::now();
     html(&set, &meter);
     assert!((meter.share() - 1.0).abs() < 1e-6, "{}", meter.share());
-    // Other tests run beside, and machines differ.
+    // Other tests run at the same time, and machines differ.
     let took = start.elapsed().as_secs_f64();
     assert!((0.02..50.0).contains(&(took / expected)), "{took} s, of {expected} s");
 }

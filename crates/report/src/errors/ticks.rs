@@ -3,13 +3,13 @@
 use super::words::number;
 use crate::error_map::{Quantity, Span};
 
-/// Nearer to an end than this share, a number would be taken for it.
+/// Numbers this near to an end, as a share of the axis, are left out: they could be taken for it.
 const AT_END: f64 = 1e-3;
 
-/// Numbers with their places: both ends, then round ones as there is room.
+/// Numbers with their shares of the axis, the most important first: both ends, then round numbers.
 pub(super) fn of(span: &Span) -> Vec<(f64, String)> {
     let label = |x: f64| match span.quantity {
-        // A full circle may begin anywhere.
+        // An axis of a full circle may begin at any azimuth, and pass 360°.
         Quantity::Azimuth if x > 90.0 => number(x.rem_euclid(360.0)),
         _ => number(x),
     };
@@ -21,7 +21,7 @@ pub(super) fn of(span: &Span) -> Vec<(f64, String)> {
     ends.into_iter().chain(round(span.quantity).iter().filter_map(inside)).collect()
 }
 
-/// Round numbers, the most telling first.
+/// Round numbers, the most useful first.
 fn round(quantity: Quantity) -> &'static [f64] {
     match quantity {
         Quantity::Gamma => &[
@@ -58,7 +58,7 @@ mod tests {
         // 10 and 100 of an axis that ends at 5 are no ticks.
         let short = of(&Span::new(Quantity::Cotangent, |t| 5.0 * t));
         assert!(short.iter().all(|tick| tick.1 != "10"), "{short:?}");
-        // A circle that begins at a quarter turn has no place twice.
+        // An axis of a full circle that begins at 90° has no number twice.
         let circle = of(&Span::new(Quantity::Azimuth, |t| 90.0 + 350.0 * t));
         let words: Vec<&str> = circle.iter().map(|tick| &*tick.1).take(5).collect();
         assert_eq!(words, ["90", "80", "180", "270", "0"]);

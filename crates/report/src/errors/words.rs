@@ -27,7 +27,6 @@ pub(super) fn what(table: &Table) -> String {
     }
 }
 
-/// The quantity of an axis.
 pub(super) fn axis(quantity: Quantity) -> &'static str {
     spoken(quantity)[0]
 }

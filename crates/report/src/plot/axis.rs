@@ -1,4 +1,4 @@
-//! Axes: what a coordinate means, its range and scale, and where its ticks stand.
+//! Axes: the meaning of a coordinate, its range, scale and ticks.
 
 /// One axis of a panel: quantity and unit, range, and whether its scale is logarithmic.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,7 +16,7 @@ pub struct Axis {
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tick {
-    /// Where, 0 at the low end and 1 at the high one.
+    /// Fraction of the axis: 0 at the low end, 1 at the high one.
     pub(super) at: f64,
     /// Its number; `None` between the numbers of a logarithmic axis.
     pub(super) label: Option<String>,
@@ -47,11 +47,11 @@ impl Axis {
         Self { is_fine: false, ..self }
     }
 
-    /// An axis from 0 to 1 of a quantity on a scale of its own: numbers with their places, the most
-    /// important first. Where there is no room for all, the first are shown.
+    /// An axis from 0 to 1 of a quantity on any scale, by numbers with their fractions of the axis,
+    /// the most important first. Where there is no room for all, the first are shown.
     ///
     /// # Panics
-    /// Without a number, or if one stands outside the axis.
+    /// Without a number, or if a fraction is outside [0, 1].
     pub fn marked(
         label: impl Into<String>,
         numbers: impl IntoIterator<Item = (f64, String)>,
@@ -72,8 +72,8 @@ impl Axis {
         if self.log { libm::exp10(x) } else { x }
     }
 
-    /// Where a value stands: 0 at the low end, 1 at the high one, beyond these outside. On a
-    /// logarithmic axis 0 is at −∞, and a negative value has no place: NaN.
+    /// The fraction of the axis at a value: 0 at the low end, 1 at the high one, outside [0, 1]
+    /// beyond. On a logarithmic axis it is −∞ for 0 and NaN for negative values.
     pub fn fraction(&self, value: f64) -> f64 {
         let [low, high] = self.ends();
         let x = if self.log { libm::log10(value) } else { value };
@@ -84,7 +84,7 @@ impl Axis {
         [self.low, self.high].map(|x| if self.log { libm::log10(x) } else { x })
     }
 
-    /// Ticks where there is room for so many numbers.
+    /// Ticks of an axis with room for this many numbers.
     pub(super) fn ticks(&self, room: usize) -> Vec<Tick> {
         let room = room.max(2) as f64;
         if !self.marks.is_empty() {
@@ -93,7 +93,7 @@ impl Axis {
         if self.log {
             let mut ticks = self.log_ticks(room);
             ticks.retain(|tick| self.is_fine || tick.label.is_some());
-            // Less than a decade may hold one number of 1, 2 and 5, which says no scale.
+            // Less than a decade may hold only one of the numbers 1, 2 and 5, which is no scale.
             if ticks.iter().filter(|tick| tick.label.is_some()).count() > 1 {
                 return ticks;
             }
@@ -141,7 +141,7 @@ impl Axis {
         let powers = (low - 1e-9).floor() as i32..=(high + 1e-9).floor() as i32;
         let plain = self.low >= 1e-3 && self.high <= 1e5;
         let tick = |mantissa: u32, power: i32| {
-            // As a number is read, so that 2e-3 is the nearest to 0.002.
+            // Parsed, so that 2e-3 is the number nearest to 0.002.
             let value = format!("{mantissa}e{power}").parse().expect("digits");
             let label = match (numbered.contains(&mantissa), mantissa) {
                 (false, _) => None,

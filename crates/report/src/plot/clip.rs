@@ -1,11 +1,11 @@
-//! The parts of a curve that a panel shows, and where it leaves.
+//! The runs of a curve that a panel shows, and where the curve leaves the panel.
 
 /// A point of a panel: (0, 0) is its left lower corner, (1, 1) the right upper one.
 pub(super) type Place = [f64; 2];
 
-/// Rounding of places at the edge.
+/// Rounding of coordinates at the edge.
 const EDGE: f64 = 1e-9;
-/// Nearer than this, one mark stands for several.
+/// Exits that are nearer to each other than this have one mark.
 const APART: f64 = 0.02;
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -16,7 +16,7 @@ pub(super) struct Clipped {
     pub(super) exits: Vec<Place>,
 }
 
-/// Cuts a curve. Parts are not joined across what is outside, nor across NaN, which has no mark.
+/// Cuts a curve to the panel. Runs are not joined across points outside or NaN; NaN has no mark.
 pub(super) fn clip(points: impl Iterator<Item = Place>) -> Clipped {
     let mut clipped = Clipped::default();
     let mut run = Vec::new();

@@ -5,7 +5,7 @@ use super::ink::{BLACK, Color, Dash};
 /// A point of a drawing, in pixels from its left upper corner.
 pub(super) type At = [f64; 2];
 
-/// Which part of a text stands at its point.
+/// How a text is aligned to its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Anchor {
     Start,
@@ -78,7 +78,7 @@ impl Drawing {
     }
 }
 
-/// A circle as a closed line; its sides are a pixel long at the radii of points and rings.
+/// A circle as a closed line, with sides of 1 to 2 pixels at the radii of points and rings.
 pub(super) fn circle([x, y]: At, radius: f64) -> Vec<At> {
     const SIDES: u32 = 24;
     let corner = |i: u32| {

@@ -64,7 +64,7 @@ pub fn figure(name: &str) -> Result<Figure, PlotError> {
     Ok((listed.ok_or_else(|| PlotError::Unknown(name.into()))?.draw)())
 }
 
-/// A function at places evenly on the scale of an axis, over the whole of it.
+/// A curve of a function at points equally spaced on the scale of an axis, from end to end.
 fn curve(key: Key, name: impl Into<String>, x: &Axis, f: impl Fn(f64) -> f64) -> Curve {
     const POINTS: u32 = 400;
     let places = (0..=POINTS).map(|i| x.value(f64::from(i) / f64::from(POINTS)));

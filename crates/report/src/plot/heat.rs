@@ -1,4 +1,4 @@
-//! A quantity over two axes in false colours, and the bar that says what these mean.
+//! A quantity over two axes in false colours, and the bar of their scale.
 
 use super::Axis;
 use super::drawing::{Anchor, At, Drawing, circle};
@@ -17,15 +17,15 @@ pub struct HeatMap {
     /// A number for each pixel, row by row from the low end of y; those that are NaN have a colour
     /// of their own.
     pub values: Vec<f64>,
-    /// What colours mean; beyond its ends they are those of its ends.
+    /// The scale of the colours; a value beyond its ends has the colour of the nearer end.
     pub scale: Axis,
-    /// A place to ring, as fractions of the axes.
+    /// A point to ring, as fractions of the axes.
     pub ring: Option<[f64; 2]>,
     /// Width and height with numbers and labels, in pixels of the page.
     pub size: [f64; 2],
 }
 
-/// Shades that maps and their bars are drawn in: so few take less bytes, and can be told apart.
+/// Shades of maps and their bars: few take fewer bytes, and can be told apart.
 const SHADES: usize = 24;
 /// The ring: its radius, and widths and colours of its lines, the same on light and dark pages.
 const RADIUS: f64 = 7.0;
@@ -49,7 +49,7 @@ impl HeatMap {
         );
         let mut drawing = Drawing::new(*size);
         let frame = Frame::within([0.0; 2], *size, BARE);
-        // Images begin at the top.
+        // Images begin at the top, values at the low end of y.
         let rows = values.chunks(*columns).rev();
         let pixels = rows.flatten().map(|&x| self.color(x)).collect();
         drawing.image(frame.at([0.0, 1.0]), [frame.width, frame.height], *columns, pixels);
@@ -67,15 +67,15 @@ impl HeatMap {
     }
 }
 
-/// The bar of the scale of maps, with its numbers, which stand over a little at its ends; as wide
-/// as this in pixels of the page.
+/// The bar of a scale with its numbers. Its width, in pixels of the page, includes half of the
+/// number at each end.
 pub fn bar(scale: &Axis, width: f64) -> Drawing {
     let mut drawing = Drawing::new([width, HEIGHT + 44.0]);
     draw_bar(&mut drawing, scale, [0.5 * ROOM, 2.0], [width - ROOM, HEIGHT], SHADES);
     drawing
 }
 
-/// Draws the bar of a scale in so many shades, with its numbers and its label beneath.
+/// Draws the bar of a scale in this number of shades, with its numbers and its label beneath.
 pub(super) fn draw_bar(
     drawing: &mut Drawing,
     scale: &Axis,

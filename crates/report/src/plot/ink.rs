@@ -16,11 +16,11 @@ pub enum Key {
     Gamma(f64),
     /// The family at this σ, where a figure compares roughnesses.
     Sigma(f64),
-    /// One of a figure's own list, by its place there; colours repeat after ten.
+    /// One of a figure's own list, by its index there; colours repeat after ten.
     Nth(usize),
 }
 
-/// How a curve is drawn; where curves hide each other, they differ in this.
+/// The dash of a curve; curves that cover each other have different dashes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Dash {
     /// Without gaps.
@@ -62,14 +62,14 @@ const GAMMAS: [Color; 5] =
 const SIGMAS: [Color; 5] =
     [[50, 10, 20], [125, 15, 40], [195, 35, 70], [230, 95, 125], [245, 165, 180]];
 
-/// Of a list whose entries have no colour elsewhere.
+/// The colours of a list whose entries have no colour elsewhere.
 const NTH: [Color; 10] = [BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, OLIVE, WINE, BLACK, GREY];
 
-/// Numbers from black through violet and orange to a pale yellow, each lighter than the last.
+/// False colours from black through violet and orange to a pale yellow, each lighter than the last.
 const FALSE: [Color; 5] =
     [[0, 0, 4], [80, 18, 123], [182, 54, 121], [251, 136, 97], [252, 253, 191]];
 
-/// Among false colours, what is not a number: a hue that no number has.
+/// The false colour of NaN: a hue that no number has.
 pub(super) const NOT_A_NUMBER: Color = SKY;
 
 /// The false colour at a fraction of a scale; beyond its ends, that of the end.
@@ -80,7 +80,7 @@ pub(super) fn false_color(fraction: f64) -> Color {
 impl Key {
     /// Of the tables of this project, in a list of ways to compute something.
     pub const TABLE: Self = Self::Nth(0);
-    /// Of what is not in such a list.
+    /// Of what is in no list.
     pub const OTHER: Self = Self::Nth(9);
 
     pub(super) fn color(self) -> Color {
@@ -108,10 +108,10 @@ impl Key {
     }
 }
 
-/// A colour for dark paper in place of one for white: mixed with the more white the darker it is,
-/// so that ramps keep their order.
+/// The colour on a dark page that replaces one on white: the darker it is, the more white is mixed
+/// in, so that ramps keep their order.
 pub(super) fn on_dark(color: Color) -> Color {
-    /// Of black.
+    /// The share of white that is mixed into black.
     const WHITE: f64 = 0.42;
     let [r, g, b] = color.map(f64::from);
     let light = (0.2126 * r + 0.7152 * g + 0.0722 * b) / 255.0;
@@ -119,7 +119,7 @@ pub(super) fn on_dark(color: Color) -> Color {
     color.map(|c| (f64::from(c) + (255.0 - f64::from(c)) * part).round() as u8)
 }
 
-/// The colour at a place of a ramp, 0 at its first stop and 1 at its last; beyond, the nearest.
+/// The colour of a ramp from its first stop at 0 to its last at 1; beyond, of the nearer end.
 fn between(stops: &[Color; 5], place: f64) -> Color {
     let at = place.clamp(0.0, 1.0) * 4.0;
     let cell = (at as usize).min(3);

@@ -1,4 +1,4 @@
-//! Names beside points, where they hide little.
+//! Names next to points, where they cover little.
 
 use super::drawing::{Anchor, At, Drawing};
 use super::ink::{Color, Dash};
@@ -10,13 +10,13 @@ const LETTERS: f64 = 10.5;
 const LINE: f64 = 12.0;
 /// Gap between a point and its name.
 const GAP: f64 = 3.0;
-/// How far a name may stand to the side of its place beside the point.
+/// Horizontal distances of a name from the position next to its point.
 const ASIDE: [f64; 4] = [0.0, 16.0, 40.0, 80.0];
-/// Half the side of the squares that stand for a line, and how far apart they are.
+/// Half the side of the squares that represent a line, and how far apart they are.
 const PEN: f64 = 1.5;
 const STRIDE: f64 = 3.0;
-/// The cost, in pixels of distance, of hiding a name or a point, of hiding a part of a line, and of
-/// leading a part of a line over a name.
+/// Costs, in pixels of distance: of covering a name or a point, of covering a square of a line, and
+/// of a square of a leading line over a name.
 const HIDES: f64 = 4000.0;
 const CROSSES: f64 = 8.0;
 const STRIKES: f64 = 60.0;
@@ -46,21 +46,21 @@ impl Area {
 
 struct Candidate {
     right: bool,
-    /// Where the name starts, or ends if it is to the left; at the middle of its height.
+    /// The end of the name that is nearer to its point, at the middle of its height.
     start: At,
     area: Area,
     is_beside: bool,
 }
 
-/// Writes the names of points beside them one after the other, each as near as it hides little;
-/// thin lines lead to those that are farther away. `curves` are what else is drawn.
+/// Writes the names of points one after the other, each where its cost is least; thin lines lead to
+/// names that are not next to their points. `curves` are the other lines of the drawing.
 pub(super) fn write(
     drawing: &mut Drawing,
     frame: &Frame,
     curves: &[Vec<At>],
     points: &[(At, &str, Color)],
 ) {
-    // What names must not hide, and what they better do not.
+    // Names must not cover `words`, and should not cover `lines` and `leads`.
     let mut words: Vec<Area> = points.iter().map(|&(at, ..)| Area::about(at, DOT)).collect();
     let segments = curves.iter().flat_map(|curve| curve.windows(2));
     let lines: Vec<Area> = segments.flat_map(|ends| squares(ends[0], ends[1])).collect();
@@ -90,7 +90,7 @@ pub(super) fn write(
     }
 }
 
-/// Places for a name of this width.
+/// Positions for a name of this width.
 fn candidates([x, y]: At, width: f64) -> impl Iterator<Item = Candidate> {
     let at = move |half_lines: i32, aside: f64, right: bool| {
         let [gap, down] = [DOT + GAP + aside, f64::from(half_lines) * 0.5 * LINE];
@@ -103,7 +103,7 @@ fn candidates([x, y]: At, width: f64) -> impl Iterator<Item = Candidate> {
     (-24..=24).flat_map(sides)
 }
 
-/// The line that leads to a name, but for what lies on its own point; none if it is beside that.
+/// The squares of a leading line without those on its own point; none for a name next to it.
 fn lead(point: At, to: &Candidate) -> impl Iterator<Item = Area> {
     let parts = (!to.is_beside).then(|| squares(point, to.start).skip(3));
     parts.into_iter().flatten()

@@ -9,7 +9,7 @@ use super::{Axis, Curve, Panel, label, text};
 pub(super) const LEFT: f64 = 78.0;
 pub(super) const RIGHT: f64 = 18.0;
 const ABOVE: f64 = 34.0;
-/// Room above what has no title.
+/// Margin above a panel without a title.
 pub(super) const BARE: f64 = 14.0;
 pub(super) const BELOW: f64 = 50.0;
 
@@ -36,7 +36,7 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// That of an area, below so much room.
+    /// The frame in the area of a panel, with this margin above it.
     pub(super) fn within([left, top]: At, [width, height]: At, above: f64) -> Self {
         Self {
             left: left + LEFT,
@@ -65,7 +65,7 @@ pub(super) fn draw(drawing: &mut Drawing, panel: &Panel, corner: At, size: At) {
     marks(drawing, panel, &frame, &drawn);
 }
 
-/// Draws the frame with the numbers of its axes and, if asked for, lines across at these.
+/// Draws the frame with the numbers of its axes and, if asked for, grid lines at the numbers.
 pub(super) fn axes(drawing: &mut Drawing, axes: [&Axis; 2], frame: &Frame, has_grid: bool) {
     let rooms = [frame.width / ROOM[0], frame.height / ROOM[1]].map(|room| room as usize);
     let (mut ticks, mut numbers, mut widest) = (Vec::new(), Vec::new(), 0.0_f64);
@@ -101,7 +101,7 @@ pub(super) fn axes(drawing: &mut Drawing, axes: [&Axis; 2], frame: &Frame, has_g
     drawing.turned_text([left - TICK - 4.0 - widest - 10.0, half], &axes[1].label, LETTERS);
 }
 
-/// Draws a curve, with triangles at the edge that point to where it went; returns its parts.
+/// Draws a curve, with triangles that point outwards where it leaves; returns its runs inside.
 fn draw_curve(drawing: &mut Drawing, panel: &Panel, curve: &Curve, frame: &Frame) -> Vec<Vec<At>> {
     let color = curve.key.color();
     let clipped = clip(curve.points.iter().map(|&point| panel.place(point)));

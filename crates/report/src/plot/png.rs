@@ -17,7 +17,7 @@ use super::{PlotError, text};
 pub(super) const SCALE: u32 = 2;
 
 impl Drawing {
-    /// As PNG, with two pixels along each of the page.
+    /// As PNG, with twice as many pixels along each edge as the page.
     ///
     /// # Errors
     /// [`PlotError::Drawing`] for a figure without panels, or larger than memory.
@@ -29,7 +29,7 @@ impl Drawing {
         for shape in &self.shapes {
             draw(&mut pixmap, shape);
         }
-        // Nothing is transparent, for the paper is not.
+        // Alpha is dropped: the white background is opaque.
         let rgb: Vec<u8> = pixmap.data().chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
         let png = encode(&rgb, [width, height], FilterType::Adaptive);
         png.map_err(|why| PlotError::Drawing(why.to_string()))
@@ -47,7 +47,7 @@ fn encode(rgb: &[u8], [width, height]: [u32; 2], filter: FilterType) -> ImageRes
     Ok(file.into_inner())
 }
 
-/// An image of whole lines. Most have few colours, which filters would turn into more values.
+/// An image of whole lines. Most have few colours, from which filters would make more values.
 pub(super) fn of_pixels(pixels: &[Color], columns: usize) -> Vec<u8> {
     let size = [columns, pixels.len() / columns].map(|edge| edge as u32);
     encode(pixels.as_flattened(), size, FilterType::NoFilter).expect("whole lines, in memory")
@@ -85,7 +85,7 @@ fn draw(pixmap: &mut Pixmap, shape: &Shape) {
             let [across, down] = [width / *columns as f64, height / lines as f64];
             let place =
                 page.pre_translate(*x as f32, *y as f32).pre_scale(across as f32, down as f32);
-            // Without a filter, pixels stay what they are.
+            // The default paint has no filter, so that pixels keep their colours.
             pixmap.draw_pixmap(0, 0, picture.as_ref(), &PixmapPaint::default(), place, None);
         }
         Shape::Text { at: [x, y], text, size, anchor, turned, color } => {
@@ -142,7 +142,7 @@ fn letters(text: &str, size: f64) -> Option<Path> {
             if last != Some(from) {
                 path.move_to(from[0], from[1]);
             }
-            // A line is a curve that bends at its start.
+            // A line is a quadratic curve with its control point at its start.
             path.quad_to(bend[0], bend[1], to[0], to[1]);
             last = Some(to);
         }

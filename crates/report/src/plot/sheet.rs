@@ -1,4 +1,4 @@
-//! Pictures in rows and columns, in their own colours or in false ones, with a scale of these.
+//! Pictures in rows and columns, in their own colours or in false ones with a scale.
 
 use super::Axis;
 use super::drawing::{Anchor, Drawing};
@@ -12,37 +12,37 @@ use super::text;
 pub enum Content {
     /// Red, green and blue of sRGB.
     Colors(Vec<[u8; 3]>),
-    /// Numbers, in false colours by the scale of the sheet. Beyond its ends they have those of its
-    /// ends, and NaN is white.
+    /// Numbers, in false colours by the scale of the sheet. A number beyond its ends has the colour
+    /// of the nearer end, and NaN is white.
     Values(Vec<f64>),
 }
 
 /// A square picture with a line below it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tile {
-    /// As many pixels as a square has.
+    /// The pixels of a square.
     pub content: Content,
-    /// Below it.
+    /// The line below the picture.
     pub caption: String,
 }
 
 /// A sheet of pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
-    /// Columns that stand together, from the left: how many, and the heading above all of them.
+    /// Groups of columns from the left: the number of columns, and the heading above them.
     pub groups: Vec<(usize, String)>,
     /// Headings of the columns.
     pub columns: Vec<String>,
     /// Rows with their names, which may have several lines, and a tile for each column.
     pub rows: Vec<(String, Vec<Tile>)>,
-    /// What false colours mean; none if there are none.
+    /// The scale of false colours; `None` without false colours.
     pub scale: Option<Axis>,
     /// The edge of a picture, in pixels of the page.
     pub edge: f64,
 }
 
-/// Sizes in pixels of the page: the room beside a row's name, that of the titles and of a caption,
-/// and the gaps between pictures and between groups of columns.
+/// Sizes in pixels of the page: the room on either side of a row's name, that of the titles and of
+/// a caption, and the gaps between pictures and between groups of columns.
 const BESIDE: f64 = 10.0;
 const HEAD: f64 = 58.0;
 const CAPTION: f64 = 22.0;
@@ -54,7 +54,7 @@ const BAR: [f64; 2] = [420.0, 14.0];
 const STEPS: usize = 256;
 
 impl Sheet {
-    /// The edge of pictures with which the page is as wide as this.
+    /// The edge of the pictures of a page of this width.
     pub fn edge_within(&self, width: f64) -> f64 {
         let apart = APART * (self.groups.len() - 1) as f64;
         (width - self.names() - apart) / self.columns.len() as f64 - GAP
@@ -66,10 +66,10 @@ impl Sheet {
         (2.0 * BESIDE + widest).ceil()
     }
 
-    /// Draws it.
+    /// The sheet as a drawing.
     ///
     /// # Panics
-    /// For a tile whose pixels are not a square.
+    /// For a tile whose pixels are not a square, and for values without a scale.
     pub fn drawing(&self) -> Drawing {
         let (across, edge, names) = (self.edge + GAP, self.edge, self.names());
         let has_captions =

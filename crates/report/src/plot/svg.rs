@@ -24,11 +24,12 @@ impl Drawing {
         self.with_shapes(head, |property, color| format!("{property}=\"{}\"", hex(color)))
     }
 
-    /// As an element of an HTML page, of class `plot`: as wide as its place, in the page's fonts,
-    /// with colours for light and dark; `label` is for screen readers.
+    /// As an element of an HTML page, of class `plot`: as wide as its container, in the page's
+    /// fonts, with colours for light and dark pages; `label` is for screen readers.
     ///
-    /// Ink is `--ink` and the grid `--line`, custom properties of the page; other colours are
-    /// `light-dark()`. A browser without these takes the attributes beside them: those on white.
+    /// Black is `--ink` and the grid `--line`, custom properties of the page; other colours are
+    /// `light-dark()`. A browser without these takes the attributes, whose colours are those on
+    /// white.
     pub fn inline_svg(&self, label: &str) -> String {
         let [width, height] = self.size;
         let label = escaped(label).replace('"', "&quot;");
@@ -46,7 +47,7 @@ impl Drawing {
         })
     }
 
-    /// `paint` writes the attributes of a property that is a colour.
+    /// Writes the shapes; `paint` writes the attributes of a property that is a colour.
     fn with_shapes(&self, head: String, paint: impl Fn(&str, Color) -> String) -> String {
         let mut out = head;
         for shape in &self.shapes {
@@ -162,7 +163,7 @@ mod tests {
         let blue = format!("light-dark(#0072b2,{})", hex(on_dark([0, 114, 178])));
         assert_eq!(styles[..2], ["fill:var(--ink)", "stroke:var(--line)"]);
         assert_eq!(styles[2..], [format!("stroke:{blue}"), format!("fill:{blue}")]);
-        // What stands in a file knows nothing of a page.
+        // A file has neither styles nor classes of a page.
         let file = drawing.svg();
         assert!(!file.contains("style") && !file.contains("class"), "{file}");
     }

@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use ab_glyph::{Font, FontRef, OutlineCurve};
 
-/// A part of DejaVu Sans; `font/README.md` says which.
+/// A subset of DejaVu Sans; `font/README.md` lists its letters.
 static SANS: LazyLock<FontRef<'static>> = LazyLock::new(|| {
     FontRef::try_from_slice(include_bytes!("font/sans.ttf")).expect("a font in this crate")
 });
@@ -17,7 +17,7 @@ pub(super) fn width(text: &str, size: f64) -> f64 {
     text.chars().map(|c| advance(c) * size).sum()
 }
 
-/// How far the next letter is, in ems.
+/// The advance of a letter, in ems.
 fn advance(c: char) -> f64 {
     f64::from(SANS.h_advance_unscaled(SANS.glyph_id(c))) / em()
 }
@@ -26,8 +26,8 @@ fn em() -> f64 {
     f64::from(SANS.units_per_em().unwrap_or(2048.0))
 }
 
-/// The length of an em in units of outlines, and those of a text's letters, y upwards, with where
-/// each stands in ems.
+/// The length of an em in units of outlines; and for each letter of a text its start in ems, and
+/// its outlines, y upwards.
 pub(super) fn outlines(text: &str) -> (f64, Vec<(f64, Vec<OutlineCurve>)>) {
     let mut x = 0.0;
     let letters = text.chars().filter_map(|c| {

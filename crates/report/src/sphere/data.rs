@@ -23,7 +23,7 @@ use super::scene::Look;
 pub(super) const SIGMA: [f64; 2] = [0.01, 1.0];
 /// Texels of albedos along roughness and view.
 const TEXELS: [usize; 2] = [32, 48];
-/// Averages along √σ, after the one of a mirror, which loses nothing.
+/// Averages along √σ from 1/48 on: at σ = 0, a mirror, nothing is lost.
 const AVERAGES: usize = 48;
 /// The metal of lobes that state no reflectance of a conductor.
 pub(super) const UNSTATED: Metal = Metal::Gold;
@@ -32,17 +32,17 @@ pub(super) const UNSTATED: Metal = Metal::Gold;
 pub(super) struct Data {
     /// The names of reflectances, in their order.
     pub(super) reflectances: Vec<String>,
-    /// As a JSON that no element of HTML ends in.
+    /// JSON with `<` escaped, so that it cannot end its element.
     pub(super) json: String,
 }
 
 #[derive(Serialize)]
 struct Choice {
     name: String,
-    /// Complex index of refraction; or F0 of Schlick's, and k below 0.
+    /// The complex index of refraction eta + i k; or F0 in `eta`, with k below 0.
     eta: [f64; 3],
     k: [f64; 3],
-    /// Its average over the hemisphere.
+    /// The average of the reflectance over the hemisphere.
     average: [f32; 3],
 }
 
@@ -54,18 +54,18 @@ pub(super) fn label(gamma: f64) -> String {
     }
 }
 
-/// The shape whose visible normals are drawn for a stop: of the same or the next heavier tails.
+/// The shape that normals are drawn from for a stop: of the same or the next heavier tails.
 fn drawn(subjects: &Subjects, gamma: f64) -> f64 {
     let mut heavier = subjects.slices.iter().copied().filter(|slice| *slice <= gamma);
     heavier.next_back().unwrap_or(gamma)
 }
 
-/// The stop nearest to a γ, as materials have it.
+/// The index of the first stop that is not below γ, or of the last stop.
 fn stop(subjects: &Subjects, gamma: f64) -> usize {
     subjects.stops.iter().position(|&stop| stop >= gamma).unwrap_or(subjects.stops.len() - 1)
 }
 
-/// Whether a lobe is shown in another reflectance than its material states.
+/// Whether a lobe is shown with another reflectance than its material states.
 pub(super) fn is_unstated(shown: &Shown) -> bool {
     shown.entry.as_ref().and_then(conductor_of).is_none()
 }
@@ -160,7 +160,7 @@ fn albedos(tables: &Tables, gamma: f64) -> Result<(Vec<f16>, Vec<f32>), Material
 }
 
 impl Data {
-    /// Tables are those of the set with the default set behind it.
+    /// `tables` are those of the set, and of the default set where the set lacks them.
     pub(super) fn new(tables: &Tables, subjects: &Subjects) -> Result<Self, MaterialError> {
         let stops = &subjects.stops;
         let mut gammas = stops.clone();
@@ -212,16 +212,16 @@ impl Data {
             })
         };
         let json = json!({
-            // The pairs of `export` for shaders: a texture so wide.
+            // The width of the texture that holds the pairs of `export` for shaders.
             "width": WIDTH,
             "tables": packed(pairs.as_flattened().iter().map(|x| x.to_le_bytes())),
             "stops": stops.iter().map(of_stop).collect::<Vec<Value>>(),
-            // Places of these shapes.
+            // Offsets of the tables of GGX and of Beckmann.
             "ggx": place(2.0),
             "beckmann": place(f64::INFINITY),
             "sigma": SIGMA,
-            // √(1 − E) in half precision, by stop, roughness and view. Of heavy tails 1 − E rises
-            // as σ, and so the root as the coordinate √σ.
+            // √(1 − E) in half precision, by stop, roughness and view. For heavy tails 1 − E rises
+            // as σ, so that the root is linear in the coordinate √σ.
             "lost": packed(lost.iter().flatten().map(|x| x.to_le_bytes())),
             "texels": TEXELS,
             // ln(1 − E_avg) by stop and at √(σ/σ_max) = 1/n, 2/n … 1.
@@ -238,7 +238,7 @@ impl Data {
     }
 }
 
-/// Which tables of a shape the page holds: all shapes are evaluated, slices are drawn from too.
+/// Which tables of a shape the page holds: all shapes are evaluated, but only slices are sampled.
 fn is_kept(table: &str, is_slice: bool) -> bool {
     match table {
         "masking" => true,

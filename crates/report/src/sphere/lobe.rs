@@ -1,5 +1,5 @@
-//! The lobe in the plane of incidence: the drawing that the script fills, and three of its views
-//! for where none runs.
+//! The lobe in the plane of incidence: the drawing that the script fills, and pictures at three
+//! views for a browser in which no script runs.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write;
@@ -10,7 +10,7 @@ use microfacet_sampler::{Lobe, Masking, MaterialError, MicrofacetDistribution, T
 
 use super::scene::Look;
 
-/// The length of the longest arrow, as `REACH` of lobe.js, and lights of a still.
+/// The length of the longest arrow, as `REACH` of lobe.js, and the number of lights of a picture.
 const REACH: f64 = 150.0;
 const LIGHTS: usize = 361;
 const VIEWS: [u32; 3] = [15, 45, 75];
@@ -70,7 +70,7 @@ pub(super) fn live() -> Markup {
     }
 }
 
-/// Three views of a lobe.
+/// Pictures of a lobe at three views.
 ///
 /// # Errors
 /// [`MaterialError`] for a shape that the tables do not cover.
@@ -94,8 +94,8 @@ impl Look {
         Ok([of(self.gamma)?, of(2.0)?, of(f64::INFINITY)?])
     }
 
-    /// f cos of one bounce with F = 1 in the plane of incidence along x, at so many lights from
-    /// −90° to 90°: of the lobe, of GGX and of Beckmann. The view is so many degrees from the
+    /// f cos of one bounce with F = 1 in the plane of incidence along x, at `lights` equally spaced
+    /// lights from −90° to 90°: of the lobe, of GGX and of Beckmann. The view is `degrees` from the
     /// normal, on the negative side.
     ///
     /// # Errors
@@ -132,12 +132,12 @@ fn still(lobes: &[Lobe; 3], degrees: u32, name: &str) -> Markup {
     }
 }
 
-/// The angle of a light among so many of the plane of incidence.
+/// The angle of light `i` of `lights` equally spaced ones from −90° to 90°.
 fn angle(i: usize, lights: usize) -> f64 {
     PI * i as f64 / (lights - 1) as f64 - FRAC_PI_2
 }
 
-/// f cos of one bounce with F = 1, from −90° to 90°; the view stands on the negative side.
+/// f cos of one bounce with F = 1 at lights from −90° to 90°; the view is on the negative side.
 fn values(lobe: &Lobe, view: f64, lights: usize) -> Vec<f64> {
     let at = |angle: f64| Vec3::new(angle.sin() as f32, 0.0, angle.cos() as f32);
     let v = at(-view);
@@ -152,7 +152,7 @@ fn values(lobe: &Lobe, view: f64, lights: usize) -> Vec<f64> {
     (0..lights).map(of).collect()
 }
 
-/// Points as SVG has them.
+/// A curve as the points of an SVG polyline, with the largest value `most` at [`REACH`].
 fn points(values: &[f64], most: f64) -> String {
     let mut text = String::new();
     let at = |(i, value): (usize, &f64)| {
@@ -166,7 +166,7 @@ fn points(values: &[f64], most: f64) -> String {
     text
 }
 
-/// Those of the points between which straight lines stray from none by more than is seen.
+/// A subset of the points whose connecting lines pass all others within 0.1, which is not visible.
 fn thinned(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     const SEEN: f64 = 0.1;
     let strays = |[ax, ay]: [f64; 2], [bx, by]: [f64; 2], [x, y]: [f64; 2]| {
@@ -206,7 +206,7 @@ mod tests {
             REACH - middle[0].hypot(middle[1])
         };
         assert!(kept.windows(2).all(|ends| off(ends) < 0.11));
-        // A lobe that is no wider than a light stays as long as it is.
+        // A lobe narrower than the distance between two lights keeps its length.
         let needle = [[0.0, 0.0], [0.0, 0.0], [0.0, -150.0], [0.0, 0.0], [0.0, 0.0]];
         assert!(thinned(&needle).contains(&[0.0, -150.0]));
     }

@@ -26,17 +26,17 @@ use scene::{Scene, jpeg};
 pub use studio::by_cosine;
 pub use tone::srgb;
 
-/// Pictures of lobes, and the one that stands for the sphere. With 96 samples the page of the
-/// default set takes a third longer, and the noise is four fifths of this.
+/// Pictures of lobes, one of which replaces the sphere where there is no WebGL 2. With 96 samples
+/// the page of the default set takes a third longer, and the noise is four fifths as large.
 const PICTURE: Film = Film { size: 240, samples: SAMPLES, seed: 1 };
-/// Pictures take most of the time of a page, and unit tests look at none.
+/// Pictures take most of the time of a page; unit tests check none.
 const SAMPLES: u32 = if cfg!(test) { 3 } else { 64 };
 /// Seconds of a picture on one processor, and of the tables of a shape.
 const SECONDS: [f64; 2] = [1.7, 0.05];
 
 /// What the section of the sphere is made of.
 pub(super) struct Parts {
-    /// The stage: canvas, controls, and the pictures beside it.
+    /// Canvas, controls and pictures.
     pub(super) body: Markup,
     /// Data and script, at the end of the page.
     pub(super) scripts: Markup,
@@ -50,7 +50,7 @@ pub(super) fn seconds(set: &Tables) -> f64 {
     seconds / rayon::current_num_threads() as f64
 }
 
-/// `None` for a set without a lobe of the family.
+/// The section of the sphere; `None` for a set without a lobe of the family.
 ///
 /// # Errors
 /// [`ReportError::Material`] for a set that lacks what it declares to cover.
@@ -84,7 +84,7 @@ pub(super) fn parts(
     Ok(Some(Parts { body, scripts: scripts(&data, &shape) }))
 }
 
-/// The addresses of pictures, one a lobe.
+/// Pictures as data URLs, one for each lobe.
 fn pictures(
     tables: &Tables,
     subjects: &Subjects,
@@ -99,7 +99,7 @@ fn pictures(
     subjects.shown.iter().map(picture).collect()
 }
 
-/// Round lobes stand in for others, so that only a shape can be missing.
+/// Round lobes stand in for others, so that a metal fails to bind for a missing shape only.
 fn unbound(why: BindError) -> ReportError {
     match why {
         BindError::Material(why) => ReportError::Material(why),
@@ -107,7 +107,7 @@ fn unbound(why: BindError) -> ReportError {
     }
 }
 
-/// The sphere, and the picture that stands for it.
+/// The canvas of the sphere, and the picture that replaces it where there is no WebGL 2.
 fn stage_of(picture: &str, name: &str) -> Markup {
     html! {
         div.stage {
@@ -178,12 +178,12 @@ fn controls(subjects: &Subjects, data: &Data) -> Markup {
     }
 }
 
-/// A hundred a decade.
+/// A hundred steps for each decade of σ.
 fn slider_steps() -> usize {
     (100.0 * (SIGMA[1] / SIGMA[0]).log10()).round() as usize
 }
 
-/// A picture of each lobe, which shows it on the sphere; where there is one, that does.
+/// Pictures of lobes, as buttons that show a lobe on the sphere; none if there is one lobe.
 fn gallery(subjects: &Subjects, pictures: &[String]) -> Markup {
     html! {
         @if pictures.len() > 1 { div.gallery {
@@ -205,7 +205,7 @@ fn gallery(subjects: &Subjects, pictures: &[String]) -> Markup {
     }
 }
 
-/// Where the sphere and the pictures are not what a material states.
+/// Notes on where the sphere and the pictures differ from what a material states.
 fn differences(subjects: &Subjects) -> Markup {
     let is_beyond = |shown: &Shown| shown.sigma.iter().any(|x| !(SIGMA[0]..=SIGMA[1]).contains(x));
     let is_other = |shown: &Shown| {
@@ -226,7 +226,7 @@ fn differences(subjects: &Subjects) -> Markup {
     }
 }
 
-/// Text of an element that is not HTML: it must not end it.
+/// Text of a script element, which must not contain the end of the element.
 fn verbatim(text: &str) -> PreEscaped<&str> {
     assert!(!text.contains("</"), "the program's own text ends no element");
     PreEscaped(text)
@@ -264,7 +264,7 @@ fn scripts(data: &Data, shape: &Shape) -> Markup {
     }
 }
 
-/// The sphere of a page as RGB, from the upper left, by the crate's own BSDFs.
+/// The sphere of a page as RGB, row by row from the upper left, by the sampler's BSDFs.
 ///
 /// # Errors
 /// [`BindError`] for a shape that neither the set nor the default set covers.

@@ -1,9 +1,9 @@
-//! The numbers of a sample: a Kronecker sequence, turned for each pixel at random.
+//! The random numbers of a sample: a Kronecker sequence with a random offset for each pixel.
 //!
-//! Number k of sample i is (r_k + i a_k) mod 1 with a_k the fractional part of the root of a prime
-//! (Richtmyer 1951), which are independent over the rationals, and r_k of the pixel and a seed by
-//! pcg3d (Jarzynski & Olano 2020, <https://jcgt.org/published/0009/03/02/>). All of it is done in
-//! whole numbers, so that `sphere.frag` gets the same ones.
+//! Number k of sample i is (r_k + i a_k) mod 1. a_k is the fractional part of the root of a prime
+//! (Richtmyer 1951); these are independent over the rationals. r_k follows from the pixel and a
+//! seed by pcg3d (Jarzynski & Olano 2020, <https://jcgt.org/published/0009/03/02/>). The arithmetic
+//! is in integers, so that `sphere.frag` gets the same numbers.
 
 use std::fmt::Write;
 

@@ -1,5 +1,5 @@
-//! A sphere of a material in the studio, by the crate's own BSDFs: what the page draws, in Rust.
-//! Random numbers and estimators are those of `sphere.frag`.
+//! A sphere of a material in the studio, as the page draws it, by the sampler's BSDFs. Random
+//! numbers and estimators are those of `sphere.frag`.
 
 use glam::{Mat3, Vec3};
 use image::codecs::jpeg::JpegEncoder;
@@ -25,23 +25,23 @@ pub struct Look {
     pub sigma: [f64; 2],
     /// The reflectance of its facets.
     pub fresnel: ConductorFresnel,
-    /// Whether the light of further bounces is given back, of other than round lobes by the round
-    /// one of √(σx σy).
+    /// Whether the light of further bounces is added (Kulla–Conty); for a lobe that is not round,
+    /// that of the round lobe of √(σx σy).
     pub compensated: bool,
 }
 
-/// A picture to be taken.
+/// Size and sampling of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Film {
     /// Pixels along its edges.
     pub size: u32,
     /// Samples of a pixel.
     pub samples: u32,
-    /// Of the random numbers.
+    /// Seed of the random numbers.
     pub seed: u32,
 }
 
-/// A material with what draws for it.
+/// A material in the studio, with the lobe that normals are drawn from.
 pub(super) struct Scene {
     studio: Studio,
     bsdf: Conductor<Lobe>,
@@ -50,7 +50,7 @@ pub(super) struct Scene {
 }
 
 impl Scene {
-    /// Tables are those of a set with the default set behind it.
+    /// `tables` are those of a set, and of the default set where the set lacks them.
     ///
     /// # Errors
     /// [`BindError`] for a shape that the tables do not cover.
@@ -83,9 +83,9 @@ impl Scene {
         self.shade(n, d, &u)
     }
 
-    /// The light reflected against a ray at a point of the sphere: one light drawn by visible
-    /// normals, one by each lamp, with compensation one by the cosine, under the balance heuristic
-    /// (Veach 1997, section 9.2).
+    /// The light reflected towards the camera at a point of the sphere with normal `n`, seen along
+    /// `d`. Lights are drawn by visible normals, by each lamp and, with compensation, by the
+    /// cosine, one each, and combined by the balance heuristic (Veach 1997, section 9.2).
     fn shade(&self, n: Vec3, d: Vec3, u: &[f32; COUNT]) -> Vec3 {
         let frame = tangent_frame(n);
         let to_tangent = frame.transpose();
@@ -99,7 +99,7 @@ impl Scene {
         lights.into_iter().map(|l| self.share(n, &frame, v, l)).sum()
     }
 
-    /// What a light adds, whichever way it was drawn.
+    /// The contribution of a light, however it was drawn: f cos L over the sum of all densities.
     fn share(&self, n: Vec3, frame: &Mat3, v: Vec3, l: Vec3) -> Vec3 {
         let m = (v + l).normalize_or_zero();
         let facing = v.dot(m);
@@ -133,7 +133,7 @@ pub fn tangent_frame(n: Vec3) -> Mat3 {
     Mat3::from_cols(x, n.cross(x), n)
 }
 
-/// A place within a pixel's tent of two pixels, about its middle.
+/// An offset from the middle of a pixel, distributed as a tent two pixels wide.
 fn tent(u: f32) -> f32 {
     let t = 2.0 * u - 1.0;
     (1.0 - (1.0 - t.abs()).sqrt()).copysign(t)

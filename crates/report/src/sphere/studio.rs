@@ -1,7 +1,7 @@
 //! The studio that a sphere is shown in: its lamps, its backdrop and its camera.
 //!
 //! World coordinates are right-handed, y up, z towards the camera; the sphere has radius 1 about
-//! the origin and lies on a floor. Light depends on the direction alone, but for that of the floor.
+//! the origin and lies on a floor. Light depends on the direction alone, except that of the floor.
 //! `studio.glsl` has the same functions; their constants are written from here.
 
 use std::f32::consts::{FRAC_1_PI, PI};
@@ -12,12 +12,12 @@ use microfacet_export::numbers::single;
 
 /// A softbox at infinity: a rectangle on the plane at distance 1 across its direction.
 pub(super) struct Lamp {
-    /// Of unit length, as the two that span the rectangle.
+    /// Unit vector; `across` and `up`, also of unit length, span the rectangle.
     towards: Vec3,
     across: Vec3,
     up: Vec3,
     half: Vec2,
-    /// How far within its edges the light rises.
+    /// The width of the soft edge, within the rectangle.
     soft: f32,
     radiance: Vec3,
 }
@@ -50,7 +50,7 @@ const FLOOR_ENDS: [f32; 2] = [1.5, 9.0];
 /// The tangent of the key light's radius, for its shadow.
 const PENUMBRA: f32 = 0.5;
 
-/// Where the camera stands, and what it looks at; half its picture is seen at this tangent.
+/// The position of the camera, the point that it looks at, and the tangent of half its field.
 const EYE: Vec3 = Vec3::new(0.0, 1.35, 6.2);
 const LOOKS_AT: Vec3 = Vec3::new(0.0, -0.1, 0.0);
 const TANGENT: f32 = 0.222;
@@ -68,7 +68,7 @@ fn smoothstep(from: f32, to: f32, x: f32) -> f32 {
 }
 
 impl Lamp {
-    /// The place on its plane, in halves of its edges, and the cosine; `None` behind it.
+    /// The point on the lamp in a direction, in halves of its edges, and the cosine; else `None`.
     fn place(&self, d: Vec3) -> Option<(Vec2, f32)> {
         let z = d.dot(self.towards);
         if !(z > 1e-3) {
@@ -84,7 +84,7 @@ impl Lamp {
         self.radiance * (x * (1.0 - 0.25 * p.dot(p)))
     }
 
-    /// Its density per steradian, at a cosine.
+    /// The density per steradian of directions towards the lamp, at a cosine.
     fn pdf(&self, z: f32) -> f32 {
         1.0 / (4.0 * self.half.x * self.half.y * z * z * z)
     }
@@ -128,9 +128,9 @@ impl Studio {
         HORIZON + (ZENITH - HORIZON) * (up * up) + GLOW * (square * square * square)
     }
 
-    /// The light of a point of the floor, and how much of it is floor, not backdrop.
+    /// The radiance of a point of the floor, and the share of the floor; the rest is backdrop.
     fn floor(&self, q: Vec3) -> (Vec3, f32) {
-        // The sphere, which touches the floor, takes (R/distance)² cos of the dome.
+        // The sphere, which touches the floor, hides (R/distance)² cos of the dome.
         let square = q.x * q.x + q.z * q.z;
         let distance = (square + 1.0).sqrt();
         let dome = 1.0 - 1.0 / (distance * distance * distance);
@@ -151,21 +151,21 @@ impl Studio {
         })
     }
 
-    /// The density of [`sample`](Self::sample) per steradian: how many of its directions there are.
+    /// The sum of the densities per steradian of the directions of [`sample`](Self::sample).
     pub(super) fn pdf(&self, d: Vec3) -> f32 {
         let of = |lamp: &Lamp| lamp.place(d).map_or(0.0, |(_, z)| lamp.pdf(z));
         self.lamps.iter().map(of).sum()
     }
 }
 
-/// A direction by the cosine, from two numbers in [0, 1).
+/// A direction about z with a density proportional to the cosine, from two numbers in [0, 1).
 pub fn by_cosine([a, b]: [f32; 2]) -> Vec3 {
     let (sin, cos) = (2.0 * PI * b).sin_cos();
     let (r, z) = (a.sqrt(), (1.0 - a).sqrt());
     Vec3::new(r * cos, r * sin, z)
 }
 
-/// Its density per steradian.
+/// The density per steradian of [`by_cosine`].
 pub(super) fn cosine_pdf(l: Vec3) -> f32 {
     l.z * FRAC_1_PI
 }

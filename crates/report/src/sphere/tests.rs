@@ -31,8 +31,8 @@ fn data(set: &Tables) -> (Subjects, Value) {
     (subjects, serde_json::from_str(&json).unwrap())
 }
 
-/// The tables of each stop stand between its place and the next, bit for bit: masking of all,
-/// slopes of those that are drawn.
+/// The tables of each stop are between its offset and the next, bit for bit: masking of all, slopes
+/// of those that are sampled.
 #[test]
 fn the_script_is_given_the_tables_of_each_shape() {
     let set = Tables::embedded();
@@ -64,8 +64,8 @@ fn the_script_is_given_the_tables_of_each_shape() {
     }
 }
 
-/// The volume of albedos has a layer a stop, a row a roughness and a texel a view; between texels a
-/// linear filter finds the albedo of the tables.
+/// The volume of albedos has a layer for each stop, a row for each roughness and a texel for each
+/// view; between texels a linear filter finds the albedo of the tables.
 #[test]
 fn the_albedo_texture_is_that_of_the_tables() {
     let set = Tables::embedded();

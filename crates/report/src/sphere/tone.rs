@@ -2,9 +2,8 @@
 
 use glam::Vec3;
 
-/// Khronos' neutral tone curve, made to keep the colours of products: what is below its shoulder
-/// is what it was, but for an offset (<https://github.com/KhronosGroup/ToneMapping>), and
-/// [`srgb`]. `present.frag` has the same.
+/// Khronos' neutral tone curve (<https://github.com/KhronosGroup/ToneMapping>), which keeps colours
+/// below its shoulder but for an offset, then [`srgb`]. `present.frag` has the same.
 pub(super) fn display(radiance: Vec3) -> [u8; 3] {
     const START: f32 = 0.8 - 0.04;
     const DESATURATION: f32 = 0.15;

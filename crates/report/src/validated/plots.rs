@@ -9,11 +9,11 @@ use crate::plot::{Axis, Curve, Dash, Key, Panel};
 use crate::words::number;
 
 const POINTS: usize = 200;
-/// Ends of the axis of errors of G1: below the rounding of single precision, and the least upper.
+/// Ends of the axis of errors of G1: below the rounding of single precision, and the least top.
 const LEAST: f64 = 1e-9;
 const HIGH: f64 = 1e-6;
 
-/// The sorted p-values of all tests beside those that chance gives.
+/// The sorted p-values of all tests, compared with those that chance gives.
 pub(super) fn p_values(record: &Record) -> Markup {
     let both = |tested: &Tested| [tested.p_lobe, tested.p_world];
     let mut sorted: Vec<f64> = record.configurations.iter().flat_map(both).collect();
@@ -57,7 +57,7 @@ pub(super) fn masking(record: &Record) -> Markup {
     let views = sorted.len() as f64;
     let points = ranks(sorted.len())
         .into_iter()
-        // Of a view that is not masked the error may be 0, which a logarithm has no place for.
+        // The error of a view that is not masked may be 0, whose logarithm is infinite.
         .map(|i| ((i as f64 + 0.5) / views, if sorted[i] < LEAST { LEAST } else { sorted[i] }));
     let largest = sorted.last().copied().unwrap_or(f64::NAN);
     let high = if largest.is_finite() { largest.max(HIGH) } else { 1.0 };

@@ -5,7 +5,7 @@ use microfacet_tables::{Certificate, Coordinate, Errors, Quantity};
 
 use super::{error, number};
 
-/// A quantity in a column.
+/// The name of a quantity as the heading of a column.
 pub fn column(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::G1 => "G1",
@@ -19,7 +19,7 @@ pub fn column(quantity: Quantity) -> &'static str {
     }
 }
 
-/// A quantity in a sentence.
+/// The name of a quantity in a sentence.
 fn spelled(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Cdf => "the CDF of visible normals",

@@ -1,4 +1,4 @@
-//! Commands that show again what a validation found.
+//! Command lines that reproduce what a validation found.
 
 use microfacet_validate::configuration::Configuration;
 use microfacet_validate::stress::Point;

@@ -18,7 +18,7 @@ pub fn material(entry: &MaterialEntry) -> String {
         parts.push(format!("gamma {}", range(entry.lobe.gamma)));
     }
     parts.extend(entry.lobe.theta.map(|theta| format!("theta {}", theta.map(number).join(", "))));
-    // Where none is stated there is one by default, but none without microfacets.
+    // If no masking is stated the default applies, but a smooth lobe has none.
     if entry.masking.is_some() || !entry.lobe.is_smooth() {
         parts.push(format!("{} masking", entry.masking()));
     }

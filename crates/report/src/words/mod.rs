@@ -1,5 +1,5 @@
-//! Sets, tables and materials in words: one home for what commands print and what a page says. What
-//! a file says is repeated as it is, and escaped where it is shown.
+//! Sets, tables and materials in words, for commands and pages. Texts from files are repeated
+//! unchanged, and escaped where they are shown.
 
 pub mod certificate;
 pub mod command;
@@ -9,7 +9,7 @@ pub mod verdict;
 
 use bytesize::ByteSize;
 
-/// A number to seven digits, which hides the rounding of coordinates: `0.3`, `1e-8`, `inf`.
+/// A number to seven digits, without the rounding of coordinates: `0.3`, `1e-8`, `inf`.
 pub fn number(x: f64) -> String {
     let rounded: f64 = format!("{x:.6e}").parse().unwrap_or(x);
     match rounded.abs() {

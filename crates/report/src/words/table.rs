@@ -1,4 +1,4 @@
-//! What a table holds, is of, and lies over, in words.
+//! The contents, subject and axes of a table in words.
 
 use microfacet_core::shape::gamma_of_s;
 use microfacet_sampler::Tables;
@@ -10,7 +10,7 @@ use microfacet_tables::{
 use super::material::reflectance;
 use super::{count, joined, number, range};
 
-/// What a table holds, and of what it is if that is not the whole family.
+/// What a table holds, and its lobe unless that is the whole family.
 pub fn holds(table: &Table) -> String {
     let kind = match table.kind {
         Kind::Shadowing | Kind::RadialShadowing => "Smith's G1 of a view",
@@ -66,7 +66,7 @@ pub fn precision(precision: Precision) -> &'static str {
 /// The lobes of which visible normals can be drawn.
 pub fn normals(set: &Tables) -> Vec<String> {
     let mut lines: Vec<String> = set.shapes().into_iter().map(gammas).collect();
-    // Shapes of s ascend, and γ falls with s.
+    // `shapes` ascend in s, and γ falls with s.
     lines.reverse();
     if !lines.is_empty() {
         lines = vec![format!("gamma {}; every sigma", joined(&lines))];
@@ -127,7 +127,7 @@ pub fn axis(axis: &Axis) -> String {
     format!("{what}: {extent}; {nodes}, {}; {}", coordinate(&axis.mapping), between(axis))
 }
 
-/// The coordinate in which nodes stand, with its name and parameters in files.
+/// The coordinate in which nodes are placed, with its name and parameters in files.
 fn coordinate(mapping: &Mapping) -> String {
     let words = match mapping {
         Mapping::InverseShape => "in 1/(gamma - 1)",

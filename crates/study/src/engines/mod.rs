@@ -1,11 +1,11 @@
-//! How far off the albedos of GGX are that engines read from their tables.
+//! Errors of the albedos of GGX that engines read from their tables.
 //!
 //! `cargo run --release -p microfacet-study -- engines shipped` prints the tables in
 //! `docs/engines.md`, where `shipped` is a folder with files of engines, as that page names them;
-//! without it, what is shipped is not measured. Each cell is the largest error and the root mean
+//! without it, shipped files are not measured. Each cell is the largest error and the root mean
 //! square, as the engine reads its table: over √σ = 1/400 … 1 and 500 cosines from 1e-3 to 1; the
-//! largest error also over 120 cosines that are even in logarithms up to 0.1. Relative errors are
-//! shares of what is true.
+//! largest error also over 120 cosines up to 0.1, even in their logarithms. Relative errors are
+//! divided by the exact value.
 
 pub mod shipped;
 
@@ -21,11 +21,11 @@ use microfacet_sampler::Masking;
 
 use crate::{Outcome, print_head};
 
-/// Cosines that are even, and those that crowd at the horizon.
+/// Numbers of evenly spaced cosines, and of those that are dense at the horizon.
 const EVEN: usize = 500;
 const LOW: usize = 120;
 const HORIZON: f64 = 1e-3;
-/// Where most cells of engines begin to hold.
+/// Least cosine of the comparisons without grazing views.
 const ABOVE: f64 = 0.02;
 
 fn places() -> Vec<Place> {
@@ -71,7 +71,7 @@ const TABLES: [What; 5] = [
     },
 ];
 
-/// Textures as they are measured: with the places of the largest error, and those of the mean.
+/// What textures are compared with: exact values by the form of masking, and our own textures.
 struct Judge {
     all: HashMap<&'static str, Vec<Known>>,
     ours: HashMap<(Vec<usize>, &'static str), Texture>,
@@ -127,7 +127,7 @@ fn written(layout: &Layout, fitted: bool) -> Texture {
     shipped::decode(layout, &files[0].contents)
 }
 
-/// Prints what the module's page says.
+/// Runs the study that the module describes.
 pub fn run(arguments: &[String]) -> Outcome {
     let folder = arguments.first().map(PathBuf::from);
     let mut judge = Judge::new();

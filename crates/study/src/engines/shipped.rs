@@ -17,13 +17,13 @@ pub fn file_of(layout: &Layout) -> Option<&'static str> {
         "bevy" => "dfg.ktx2",
         "babylon" => "brdfTextureTools.js",
         "gltf" => "lut_ggx.png",
-        // Built with the engine, rendered at its start, or given by its host.
+        // No file: built with the engine, rendered at its start, or given by its host.
         _ => return None,
     })
 }
 
-/// A file of a layout as the texture that its engine reads, square, and of any size where the form
-/// says which.
+/// A file of a layout as the texture that its engine reads: square, of the size that the file has,
+/// or that of the layout.
 pub fn decode(layout: &Layout, bytes: &[u8]) -> Texture {
     let text = || String::from_utf8_lossy(bytes).into_owned();
     let (values, size): (Vec<f32>, _) = match layout.name {
@@ -74,7 +74,7 @@ fn between(text: &str, mark: &str, open: char, close: char) -> String {
     body.split_once(close).expect("its end").0.to_owned()
 }
 
-/// The decimal numbers there.
+/// The decimal numbers of [`between`].
 fn array(text: &str, mark: &str, open: char, close: char) -> Vec<f32> {
     let body = between(text, mark, open, close);
     let numbers = body.split(',').map(|x| x.trim().trim_end_matches('f')).filter(|x| !x.is_empty());

@@ -18,7 +18,7 @@ pub struct Material {
     pub f0: [f64; 3],
     /// Albedo of the Lambert term.
     pub lambert: [f64; 3],
-    /// Each value is off by up to this share, either way.
+    /// Largest relative noise of a value, in either direction.
     pub noise: f64,
 }
 
@@ -55,7 +55,8 @@ fn steps(lobe: &impl MicrofacetDistribution) -> Vec<f64> {
 }
 
 impl Material {
-    /// The bytes of its file; one value of a hundred is missing.
+    /// The bytes of its file, with one value in a hundred missing. `place` is the point of a cell
+    /// that its value is of: 0 is the start.
     pub fn file(&self, place: f64) -> Result<Vec<u8>, DistributionError> {
         let lobes: Result<Vec<Lobe>, _> = self.lobes.iter().map(|lobe| Lobe::new(*lobe)).collect();
         let lobes = lobes?;

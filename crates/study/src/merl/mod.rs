@@ -1,5 +1,5 @@
-//! Makes files in the format of the MERL database, which may not be passed on: materials of known
-//! lobes, and of lobes outside the Student-t family, with noise and gaps.
+//! Makes files in the format of the MERL database, whose own files may not be redistributed:
+//! materials of known lobes, and of lobes outside the Student-t family, with noise and gaps.
 //!
 //! ```sh
 //! cargo run --release -p microfacet-study -- merl merl
@@ -7,7 +7,7 @@
 //! ```
 //!
 //! With `--start` before the folder a value is that of the start of its cell instead of its middle:
-//! the fits then show what it costs to take it for the other. The folder is made, and must not hold
+//! fits then show the error of taking one for the other. The folder is made, and must not hold
 //! files of these names yet.
 
 pub mod made;
@@ -21,7 +21,7 @@ use microfacet_fit::merl::MIDDLE;
 
 use crate::Outcome;
 
-/// Prints what the module's page says.
+/// Runs the study that the module describes.
 pub fn run(arguments: &[String]) -> Outcome {
     let (place, folder) = match arguments {
         [folder] if !folder.starts_with('-') => (MIDDLE, folder),
@@ -63,7 +63,6 @@ fn materials() -> Vec<(&'static str, Material)> {
     ]
 }
 
-/// What a material is made of.
 fn text(material: &Material) -> String {
     let Material { lobes, f0, lambert, noise } = material;
     let lobe = |(share, lobe): &(f64, &str)| {

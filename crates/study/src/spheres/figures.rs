@@ -1,4 +1,4 @@
-//! The figures: which materials stand where, and how they are made.
+//! The figures: their materials in rows and columns, and how these are made.
 
 use std::error::Error;
 use std::fmt::Write;
@@ -68,7 +68,7 @@ impl Spheres {
 }
 
 const SHAPES: [f64; 6] = [1.51, 1.65, 2.0, 4.0, 10.0, 50.0];
-/// Of these one bounce loses much.
+/// The number of shapes, from the first, that lose much light after one bounce.
 const COMPENSATED: usize = 3;
 const SIGMA: f64 = 0.3;
 /// Brushed: rough around the vertical axis, smoother along it.
@@ -78,7 +78,7 @@ const TILT: f64 = 0.5;
 /// Indices of refraction.
 const COAT: f64 = 1.5;
 const DIAMOND: f64 = 2.42;
-/// Under the coat.
+/// Albedo of the base under the coat.
 const RED: [f32; 3] = [0.65, 0.04, 0.03];
 
 impl Figure {
@@ -199,7 +199,7 @@ fn roughness(tables: &Tables) -> Result<Spheres, BindError> {
 
 fn energy(tables: &Tables) -> Result<Spheres, BindError> {
     const SIGMAS: [f64; 6] = [0.01, 0.1, 0.3, 0.6, 1.0, 2.0];
-    // As the paper has it.
+    // As in the paper.
     let masking = Masking::Uncorrelated;
     let each = |gamma| {
         row(label(gamma), &SIGMAS, |sigma| {

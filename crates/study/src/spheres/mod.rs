@@ -2,9 +2,9 @@
 //! that takes its materials from the sampler crate.
 //!
 //! `cargo run --release -p microfacet-study -- spheres OUTPUT` writes figure 8 as OUTPUT.exr
-//! (linear radiance) and OUTPUT.png; `--help` has the options. Read `figures.rs` for how materials
-//! are made, and `path.rs` for how a renderer asks them; `scene.rs` is what surrounds them,
-//! `sky.rs` lights them, and `page.rs` is the paper.
+//! (linear radiance) and OUTPUT.png; `--help` has the options. `figures.rs` makes the materials,
+//! `path.rs` shows how a renderer calls them, `scene.rs` is what surrounds them, `sky.rs` lights
+//! them, and `page.rs` arranges the pictures.
 
 mod figures;
 mod page;
@@ -72,10 +72,10 @@ fn steps(text: &str) -> Result<f32, String> {
     text.parse().ok().filter(|x| (0.0..=255.0).contains(x)).ok_or_else(|| range.into())
 }
 
-/// Paths between two looks at the error.
+/// Paths between two estimates of the error.
 const BATCH: u32 = 64;
 
-/// How a sphere's square is exposed.
+/// Size and sampling of a sphere's square.
 #[derive(Clone, Copy)]
 struct Film {
     cell: usize,
@@ -125,7 +125,7 @@ fn render(scenes: &[Scene], film: Film, meter: &Meter) -> Vec<Vec<Vec3>> {
     (0..scenes.len() * cell).into_par_iter().map(line).collect()
 }
 
-/// Does some work, and shows on a terminal how much of it is done.
+/// Does some work, with a progress bar on a terminal.
 fn watched<T>(what: &'static str, work: impl FnOnce(&Meter) -> T) -> T {
     const STEPS: u64 = 1000;
     let meter = Meter::default();
@@ -147,7 +147,7 @@ fn watched<T>(what: &'static str, work: impl FnOnce(&Meter) -> T) -> T {
     })
 }
 
-/// Prints what the module's page says.
+/// Runs the study that the module describes.
 pub fn run(arguments: &[String]) -> Outcome {
     let Arguments { output, figure, width, limit } =
         Arguments::parse_from(iter::once("spheres").chain(arguments.iter().map(String::as_str)));
@@ -156,14 +156,14 @@ pub fn run(arguments: &[String]) -> Outcome {
         name.push(extension);
         PathBuf::from(name)
     };
-    // Minutes of work should not end in a folder that does not exist.
+    // A folder that cannot be written to is found before minutes of work.
     let folder = match output.parent() {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
     };
     tempfile::tempfile_in(folder).map_err(|why| format!("{}: {why}", folder.display()))?;
     let mut spheres: Spheres = watched("Baking albedos", |meter| figure.spheres(meter))?;
-    // A drawing has two pixels along each of the page.
+    // A PNG has two pixels along each pixel of the page.
     let cell = (2.0 * spheres.sheet.edge_within(0.5 * f64::from(width))) as usize;
     spheres.sheet.edge = 0.5 * cell as f64;
     let film = Film { cell, limit, is_linear: spheres.is_linear };

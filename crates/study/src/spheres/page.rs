@@ -9,11 +9,11 @@ use microfacet_report::srgb;
 
 use crate::spheres::figures::Spheres;
 
-/// Of what is shown with a shoulder.
+/// Exposure of pictures with a shoulder.
 const EXPOSURE: f32 = 0.7;
 
-/// Radiance line by line, as many pixels in each as lines of a square, row by row of the spheres:
-/// linear and without words.
+/// Writes linear radiance, without text. `lines` has the lines of the squares, square after square,
+/// row by row of the page.
 pub(crate) fn write_exr(
     path: &Path,
     spheres: &Spheres,
@@ -29,7 +29,7 @@ pub(crate) fn write_exr(
     Ok(exr::prelude::write_rgb_file(path, size[0], size[1], pixel)?)
 }
 
-/// What is shown of such lines, with words, on white.
+/// Writes the page with its text, on white, from the same `lines` as [`write_exr`].
 pub(crate) fn write_png(
     path: &Path,
     spheres: Spheres,
@@ -46,7 +46,7 @@ pub(crate) fn write_png(
     Ok(std::fs::write(path, sheet.drawing().png()?)?)
 }
 
-/// Steps of 1/255 by which an error changes what is shown.
+/// Steps of 1/255 by which an error changes the picture.
 pub(crate) fn steps(radiance: Vec3, error: Vec3, is_linear: bool) -> f32 {
     let [a, b] = [radiance, radiance + error].map(|radiance| encoded(radiance, is_linear));
     255.0 * (b - a).max_element()
@@ -57,7 +57,8 @@ fn encoded(radiance: Vec3, is_linear: bool) -> Vec3 {
     Vec3::from(radiance.to_array().map(|x| srgb(shown(x).into()) as f32))
 }
 
-/// Keeps what is brighter than white apart: the identity below a half, then a curve to 1.
+/// A tone curve that keeps highlights distinct: the identity below a half, then an exponential
+/// towards 1.
 fn shoulder(x: f32) -> f32 {
     if x <= 0.5 { x } else { 1.0 - 0.5 * (1.0 - 2.0 * x).exp() }
 }

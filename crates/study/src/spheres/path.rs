@@ -9,7 +9,7 @@ use microfacet_sampler::Transport;
 use crate::spheres::random::Random;
 use crate::spheres::scene::{Ray, Scene};
 
-/// A diamond reflects some 83 % from inside, so that 1e-8 of the light is lost here.
+/// A diamond reflects some 83 % from inside, so that paths of this length lose 1e-8 of the light.
 const MOST_BOUNCES: usize = 100;
 /// From here on paths end or split at random: weights of a compensated diamond multiply to 1000.
 const ROULETTE: usize = 4;
@@ -45,7 +45,8 @@ impl Tracer<'_> {
             let (f, of_bsdf) = hit.bsdf.eval_pdf(v, l, Transport::Radiance);
             let shadow = Ray { origin: hit.point, direction: towards };
             if f != [0.0; 3] && !self.scene.is_shadowed(&shadow) {
-                // f next to the horizon may be the largest number: divided first, it is harmless.
+                // f next to the horizon may be the largest number: the division comes first, to
+                // keep it finite.
                 let (seen, of_lamps) = sky.seen(towards);
                 radiance += Vec3::from(f) * (l.z.abs() / (of_lamps + of_bsdf)) * seen;
             }
@@ -68,7 +69,7 @@ impl Tracer<'_> {
         if bounces < ROULETTE {
             return radiance + weight * self.arriving(&ray, pdf, share, bounces + 1);
         }
-        // As many rays go on, on average, as the share says: each with a share of 1.
+        // On average `rays` go on, each with a share of 1.
         let rays = share.max_element();
         for _ in 0..(rays + self.random.one()) as usize {
             let one = self.arriving(&ray, pdf, share / rays, bounces + 1);

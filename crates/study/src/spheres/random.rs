@@ -1,7 +1,7 @@
 //! The numbers of a path: an Owen-scrambled Sobol sequence of each pixel (Burley 2020, *Practical
 //! Hash-based Owen Scrambling*, <https://jcgt.org/published/0009/04/01/>).
 
-/// Dimensions of one sequence; longer paths go on in another.
+/// Dimensions of one sequence; longer paths continue in another.
 const DIMENSIONS: u32 = 256;
 
 /// The coordinates of one point, taken one after the other.
@@ -17,7 +17,7 @@ impl Random {
 
     /// The point of an index below [`MOST`](Self::MOST), of a pixel.
     pub(crate) fn new(pixel: u32, index: u32) -> Self {
-        // Seeds of neighbours far apart, by the golden ratio.
+        // The golden ratio spreads the seeds of neighbouring pixels.
         Self { seed: pixel.wrapping_mul(0x9e37_79b9), index, dimension: 0 }
     }
 

@@ -13,9 +13,11 @@ use microfacet_sampler::{AnyBsdf, Bsdf, BsdfSample, Transport};
 use crate::spheres::sky::Sky;
 
 const FLOOR: f32 = -1.0;
-/// Edge of the floor's squares: they are seen through rough diamond. Four meet under the sphere.
+/// Edge of the floor's squares: large enough to be seen through rough diamond. Four meet under the
+/// sphere.
 const SQUARE: f32 = 2.0;
-/// Rays that leave a surface start on it, to the rounding of this scene's coordinates.
+/// The least distance of a hit: rays start on a surface, to the rounding of this scene's
+/// coordinates.
 const NEAREST: f32 = 1e-4;
 
 pub(crate) struct Ray {
@@ -84,7 +86,7 @@ impl Floor {
     }
 }
 
-/// A BSDF of one's own fits in among those of the crate.
+/// A Lambert term, as a BSDF that is implemented outside the sampler.
 struct Diffuse {
     albedo: [f32; 3],
 }

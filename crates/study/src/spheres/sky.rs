@@ -15,7 +15,7 @@ struct Lamp {
     radiance: Vec3,
 }
 
-/// All light comes from infinity: a smooth sky, and lamps that a renderer looks for.
+/// A smooth sky, and lamps that a renderer samples; all light comes from infinity.
 pub struct Sky {
     zenith: Vec3,
     horizon: Vec3,
@@ -28,7 +28,7 @@ impl Sky {
         Self { zenith: Vec3::ONE, horizon: Vec3::ONE, lamps: Vec::new() }
     }
 
-    /// The same, as a lamp all around: what light there is can be looked for.
+    /// A white furnace as a lamp in all directions, whose light can be sampled.
     pub fn white_lamp() -> Self {
         let lamp = Lamp { towards: Vec3::Y, height: 2.0, radiance: Vec3::ONE };
         Self { zenith: Vec3::ZERO, horizon: Vec3::ZERO, lamps: vec![lamp] }
@@ -50,8 +50,8 @@ impl Sky {
         }
     }
 
-    /// Radiance from a direction of unit length, and the density there of all that
-    /// [`sample`](Self::sample) draws, per steradian.
+    /// Radiance from a direction of unit length, and the sum of the densities per steradian there
+    /// of the directions of [`sample`](Self::sample).
     pub fn seen(&self, direction: Vec3) -> (Vec3, f32) {
         let sky = self.horizon.lerp(self.zenith, direction.y.abs().sqrt());
         let seen = self.lamps.iter().filter(|at| 1.0 - at.towards.dot(direction) < at.height);
@@ -60,7 +60,8 @@ impl Sky {
         })
     }
 
-    /// A direction towards each of the lamps, even over its disc, from one pair of random numbers.
+    /// A direction towards each of the lamps, uniform over its disc, from one pair of random
+    /// numbers.
     pub fn sample(&self, u: [f32; 2]) -> impl Iterator<Item = Vec3> {
         let (sin, cos) = (TAU * u[1]).sin_cos();
         self.lamps.iter().map(move |lamp| {

@@ -1,4 +1,4 @@
-//! White furnaces: what is white, or loses a known share of its light, in front of white.
+//! White furnaces: materials that are white, or lose a known share of the light, in front of white.
 
 use std::error::Error;
 use std::f32::consts::PI;
@@ -16,8 +16,8 @@ use super::{Film, Limit, REACH, pixel};
 use crate::spheres::scene::Scene;
 use crate::spheres::sky::Sky;
 
-/// What a sphere shows on average where 1 is all around, found by the BSDF alone and, as of a lamp,
-/// by next-event estimation too. Its standard error is below 4e-3.
+/// The mean radiance of a sphere in a white furnace of radiance 1: by sampling the BSDF alone and,
+/// from a lamp, by next-event estimation too. Its standard error is below 4e-3.
 fn furnaces(material: &AnyBsdf) -> [f32; 2] {
     const CELL: usize = 40;
     let film = Film { cell: CELL, limit: Limit { samples: 64, noise: 0.0 }, is_linear: true };
@@ -29,8 +29,8 @@ fn furnaces(material: &AnyBsdf) -> [f32; 2] {
     })
 }
 
-/// Parallel light meets the disc of a sphere evenly, so that the mean over it is that of the
-/// albedo by the cosine.
+/// A parallel camera sees the disc of a sphere evenly, so that the mean over the disc is the
+/// cosine-weighted average of the albedo.
 #[test]
 fn white_metal_shows_its_average_albedo() -> Result<(), Box<dyn Error>> {
     let (tables, masking) = (Tables::embedded(), Masking::Uncorrelated);
@@ -53,7 +53,7 @@ fn smooth_diamond_shows_all_light() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Weights above 1 multiply inside it: the paths split.
+/// Weights above 1 multiply inside the diamond, so that paths split.
 #[test]
 fn rough_diamond_shows_all_light_where_it_is_given_back() -> Result<(), Box<dyn Error>> {
     let recipe = "[[material]]\nname = \"diamond\"\nsigma = 0.3\ngamma = 2.0\n\

@@ -1,7 +1,7 @@
-//! How far the family is from its limit for large γ, after figure 10 of Ribardière et al. 2017
-//! (doi:10.1111/cgf.13137): below 0.5 % for the distribution and 0.3 % for masking at γ = 40 and
-//! σ < 1.2. Their definition of the distance was not at hand; of these usual ones, the mean over
-//! the hemisphere keeps both bounds at γ = 40 and breaks both at γ = 30.
+//! The distance of the family from its limit at large γ, after figure 10 of Ribardière et al. 2017
+//! (doi:10.1111/cgf.13137), who state less than 0.5 % for the distribution and 0.3 % for masking at
+//! γ = 40 and σ < 1.2. Their definition of the distance was not available; of the usual ones drawn
+//! here, the mean over the hemisphere keeps both bounds at γ = 40 and exceeds both at γ = 30.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -21,7 +21,7 @@ const ANGLES: usize = 2000;
 
 struct At {
     theta: f64,
-    /// |ΔD| per steradian, and D(0) of both.
+    /// |ΔD| per steradian, and D(0), which is the same for both.
     d: f64,
     peak: f64,
     /// |ΔG1|, and G1 of the limit.
@@ -35,7 +35,7 @@ impl At {
     }
 }
 
-/// A measure of distance: its name, the printed bound in %, and its value of those at all angles.
+/// A measure of distance: its name, the printed bound in %, and its value from all angles.
 type Measure = (&'static str, f64, fn(&[At]) -> f64);
 
 const BOUND_OF_D: f64 = 0.5;
@@ -72,12 +72,12 @@ fn mean(all: &[At], f: impl Fn(&At) -> f64) -> f64 {
     all.iter().map(f).sum::<f64>() / all.len() as f64
 }
 
-/// Over the solid angles of the hemisphere.
+/// The integral over the solid angle of the hemisphere.
 fn integral(all: &[At], f: impl Fn(&At) -> f64) -> f64 {
     FRAC_PI_2 * mean(all, |at| 2.0 * PI * at.theta.sin() * f(at))
 }
 
-/// A panel a measure: two rows for D, then two for masking.
+/// One panel for each measure: two rows for D, then two for masking.
 pub(super) fn figure() -> Figure {
     let [low, high] = SIGMAS;
     let sigmas = (0..=STEPS).map(|i| low + (high - low) * i as f64 / STEPS as f64);

@@ -1,4 +1,4 @@
-//! The error of Λ in each form that Ribardière et al. 2017 (doi:10.1111/cgf.13137) print.
+//! The error of each formula for Λ that Ribardière et al. 2017 (doi:10.1111/cgf.13137) print.
 
 use microfacet_model::Shape;
 use microfacet_model::printed::{FORMS, Form};
@@ -18,7 +18,7 @@ pub(super) fn figure() -> Figure {
     Figure::new([3.0, 10.5, 40.0, 150.0].map(panel))
 }
 
-/// The relative errors of Λ over z = cot θ/σ, as far as a form has a digit right.
+/// The relative errors of Λ over z = cot θ/σ, as far as a formula has a correct digit.
 fn panel(gamma: f64) -> Panel {
     let shape = Shape::new(gamma).expect("the figure's own parameters");
     let x = Axis::log("cot θ/σ", 1e-2, 1e3);
@@ -31,18 +31,18 @@ fn panel(gamma: f64) -> Panel {
         let error = (form.lambda)(gamma, z).map_or(f64::NAN, |lambda| (lambda - truth).abs());
         // Where Λ is 0, any error is infinite.
         let relative = error / truth.max(1e-300);
-        // No error at all is drawn as half an ulp; what is no number stays so, and is not drawn.
+        // An error of 0 is drawn as half an ulp; NaN stays NaN, and is not drawn.
         if relative < 1.1e-16 { 1.1e-16 } else { relative }
     };
     let curves = defined.map(|(form, key)| {
         let mut curve = curve(key, name(&form), &x, |z| error(form, z));
-        // What follows is noise of rounding.
+        // After the first error of 1 the values are rounding noise.
         if let Some(lost) = curve.points.iter().position(|&(_, error)| error >= 1.0) {
             curve.points.truncate(lost + 1);
-            // An error of 1, a Λ of 0, leaves the panel as well.
+            // Above the panel, so that an error of exactly 1, from a Λ of 0, leaves it too.
             curve.points[lost].1 = 10.0;
         }
-        // The series and the sums agree where neither loses digits.
+        // Dashed, since the series and the sums agree where neither loses digits.
         if key != KEYS[0] {
             curve.dash = Dash::Dashed;
         }

@@ -1,6 +1,6 @@
-//! Distributions set so that they are near one Beckmann, after Sawicki 2021 (*Microfacet
-//! Distribution Function: To Change or Not to Change, That Is the Question*,
-//! <https://doi.org/10.5220/0010252702090220>), with the parameters that he prints.
+//! Distributions with parameters that bring each of them near one Beckmann distribution, as printed
+//! by Sawicki 2021 (*Microfacet Distribution Function: To Change or Not to Change, That Is the
+//! Question*, <https://doi.org/10.5220/0010252702090220>).
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -10,7 +10,7 @@ use microfacet_model::classic::Isotropic;
 use crate::plot::figures::curve;
 use crate::plot::{Axis, Curve, Dash, Figure, Key, Panel};
 
-/// What is drawn, with the letters of parameters. Curves that hide each other differ in dashes.
+/// The distributions, with the letters of their parameters; curves that coincide differ in dashes.
 const DRAWN: [(DistributionKind, &str, Dash); 6] = [
     (DistributionKind::Beckmann, "m", Dash::Solid),
     (DistributionKind::BlinnPhong, "N", Dash::Dashed),
@@ -19,7 +19,7 @@ const DRAWN: [(DistributionKind, &str, Dash); 6] = [
     (DistributionKind::Schlick, "m", Dash::Dashed),
     (DistributionKind::Sawicki, "N", Dash::Solid),
 ];
-/// Its parameters in his figure 1, and in figure 2. That of Schlick is Beckmann's.
+/// The parameters of [`DRAWN`] in figures 1 and 2 of Sawicki 2021; that of Schlick is Beckmann's.
 const SETS: [Set; 2] = [
     Set([0.4, 10.0, 0.4364, 0.4456, 0.4, 12.04]),
     Set([0.04464, 1000.0, 0.04471, 0.05354, 0.04464, 1174.3]),
@@ -53,8 +53,8 @@ impl Set {
         DRAWN.into_iter().zip(self.0).map(of).collect()
     }
 
-    /// Curves over β as far as the lobes reach, in degrees: of D/D(0), and that of Beckmann, which
-    /// is left out of those that are compared with it.
+    /// Curves over β in degrees, as far as the lobes reach, of a function of D/D(0) of a lobe and
+    /// of Beckmann. Beckmann itself is left out where the others are compared with it.
     fn over_angles(
         &self,
         title: &str,
@@ -89,16 +89,16 @@ impl Set {
         self.over_angles("D/D(0) over Beckmann's", y, true, |d, beckmann| d / beckmann)
     }
 
-    /// Brightness along the line through the highlight of a sphere, with view and light far away at
-    /// an angle of each other, relative to that where the half vector is the normal.
+    /// Brightness along the line through the highlight of a sphere, relative to that where the half
+    /// vector is the normal. View and light are far away, at this angle to each other.
     ///
-    /// Reflection has the form of Ashikhmin and Shirley 2000 (*An Anisotropic Phong BRDF Model*,
+    /// The BRDF is that of Ashikhmin and Shirley 2000 (*An Anisotropic Phong BRDF Model*,
     /// <https://doi.org/10.1080/10867651.2000.10487522>), D F/(4 (v·m) max(n·v, n·l)), times n·l.
     /// All points have one half vector m, so that F and v·m cancel.
     fn highlight(&self, degrees: f64) -> Panel {
         let light = degrees.to_radians();
         let half = 0.5 * light;
-        // Normals that view and light see, near the highlight.
+        // Normals near the highlight that face both view and light.
         let reach = 5.0 * self.beckmann();
         let low = (half - reach).max(light - FRAC_PI_2).max(-FRAC_PI_2);
         let high = (half + reach).min(FRAC_PI_2);
@@ -117,18 +117,18 @@ impl Set {
     }
 }
 
-/// D/D(0), and what Beckmann's has more or less, as in his figures 1 and 2.
+/// D/D(0), and its differences from Beckmann's, as in figures 1 and 2 of Sawicki 2021.
 pub(super) fn distributions() -> Figure {
     Figure::new(SETS.iter().flat_map(|set| [set.unit_forms(), set.differences()]))
 }
 
-/// The same as ratios, which show the tails.
+/// Ratios of D/D(0) to Beckmann's, which show the tails.
 pub(super) fn tails() -> Figure {
     let panels = SETS.iter().map(Set::tails).collect();
     Figure { panels, columns: 1, panel: [760.0, 360.0] }
 }
 
-/// Highlights of a rough sphere and of a smooth one, after his figures 3–5.
+/// Highlights of a rough sphere and of a smooth one, after figures 3–5 of Sawicki 2021.
 pub(super) fn highlights() -> Figure {
     let row = |set: &Set| [45.0, 120.0].map(|degrees| set.highlight(degrees));
     Figure::new(SETS.iter().flat_map(row))
@@ -148,12 +148,12 @@ mod tests {
         let of = |curves: &[Curve], kind| {
             largest(curves.iter().find(|curve| curve.key == Key::Kind(kind)).unwrap())
         };
-        // The text has 3.5 % for Blinn–Phong at N = 10, and 3–7 % for Sawicki.
+        // The paper states 3.5 % for Blinn–Phong at N = 10, and 3–7 % for Sawicki.
         assert!((of(&rough, DistributionKind::BlinnPhong) - 3.5).abs() < 0.05);
         let [most, least] =
             [&rough, &smooth].map(|curves| of(curves, DistributionKind::Sawicki).round());
         assert_eq!([least, most], [3.0, 7.0]);
-        // And 13–15 % for Schlick, which is 12.4 to 15.3.
+        // The paper states 13–15 % for Schlick; computed, it is 12.4 to 15.3.
         let [least, most] = [&rough, &smooth].map(|curves| of(curves, DistributionKind::Schlick));
         assert!((least - 12.4).abs() < 0.05 && (most - 15.3).abs() < 0.05, "{least} {most}");
         // All agree at β = 0.

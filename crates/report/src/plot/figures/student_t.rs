@@ -13,7 +13,7 @@ const SIGMAS: [f64; 5] = [0.2, 0.35, 0.5, 0.75, 1.0];
 const SIGMA: f64 = 0.5;
 const GAMMA: f64 = 3.0;
 
-/// P22 on a logarithmic scale, for the shapes differ in their tails, and G1.
+/// P22 on a logarithmic scale, since the shapes differ in their tails, and G1.
 pub(super) fn figure() -> Figure {
     let of = |sigma, gamma| StudentT::new(sigma, gamma).expect("the figure's own parameters");
     let by_gamma = GAMMAS.map(|g| (Key::Gamma(g), format!("γ = {g}"), of(SIGMA, g)));
