@@ -61,8 +61,8 @@ pub struct Walk {
     pub bounces: f64,
 }
 
-/// Runs the furnace for one material and view; σ = 0 is a mirror, and a view at the horizon is
-/// raised to cos θ = 1e-30, one above 1 lowered to that.
+/// Runs the furnace for one material and view; σ = 0 is a mirror, and cos θ is clamped to [1e-30,
+/// 1].
 ///
 /// # Errors
 /// [`MaterialError`] for a material that the tables do not cover.
@@ -94,9 +94,9 @@ fn lobe(albedo: &Albedo, cos_theta: f32) -> f64 {
 /// ∫ f cos θ over the lights of a hemisphere, of an f that does not depend on the azimuth, given
 /// sin θ and cos θ.
 ///
-/// By the midpoint rule in ln tan θ: a smooth surface loses its light at grazing, and one of heavy
-/// tails turns within its roughness of the normal. In a step of the cosine's logarithm that turn
-/// would be lost, 2.5e-4 of the integral at σ = 0.01 and γ = 1.501.
+/// The midpoint rule in ln tan θ resolves the horizon, where a smooth surface loses its light, and
+/// the normal, around which f of heavy tails changes within the roughness. Even steps of ln cos θ
+/// would miss that change: 2.5e-4 of the integral at σ = 0.01 and γ = 1.501.
 pub(crate) fn over_lights(f: impl Fn(f32, f32) -> f64) -> f64 {
     const STEPS: usize = 4000;
     /// Lights closer than e⁻¹⁶ to the normal contribute nothing, nor those closer than e⁻³⁰ to the
@@ -112,7 +112,7 @@ pub(crate) fn over_lights(f: impl Fn(f32, f32) -> f64) -> f64 {
     2.0 * std::f64::consts::PI * (0..STEPS).map(at).sum::<f64>()
 }
 
-/// A view at this cosine, for isotropic lobes.
+/// The view with this cosine and azimuth 0, for isotropic lobes.
 pub fn direction(cos: f32) -> Vec3 {
     Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos)
 }
@@ -127,9 +127,9 @@ pub struct Survey {
     /// Allowed deviation from 1: [`TOLERANCE`], or the error of E that the table's certificate
     /// states, if that is larger.
     pub allowed: f64,
-    /// Where the Kulla–Conty lobe brings back the least light.
+    /// The material and view for which the Kulla–Conty lobe returns the least light.
     pub lowest: Furnace,
-    /// Where it brings back the most.
+    /// The material and view for which it returns the most.
     pub highest: Furnace,
 }
 
@@ -213,7 +213,8 @@ pub fn has_furnace(tables: &Tables) -> bool {
     of_family(tables).next().is_some()
 }
 
-/// The round lobes that a furnace can be run for with one form of masking, a range a table.
+/// The round lobes that a furnace can be run for with one form of masking, one range for each
+/// table.
 pub fn domains(tables: &Tables, masking: Masking) -> Vec<LobeSpec> {
     let of = of_family(tables).filter(|(_, of)| *of == masking);
     of.map(|(table, _)| table.subject.lobe.clone()).collect()

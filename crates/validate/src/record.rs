@@ -134,7 +134,7 @@ impl From<&Survey> for Returned {
 /// # Errors
 /// [`LoadError::Invalid`](microfacet_tables::LoadError) for a set that could not be written.
 pub fn identity(set: &Tables) -> Result<String, microfacet_tables::LoadError> {
-    /// The digits, where a document has them.
+    /// The member of a description that has the digits.
     #[derive(Deserialize)]
     struct Sealed {
         checksum: String,
@@ -194,7 +194,7 @@ mod tests {
         assert_eq!(serde_json::from_str::<Record>(&text).unwrap(), record);
     }
 
-    /// JSON has no NaN, and a failed test must not make a record that cannot be read.
+    /// JSON has no NaN, and the record of a failed test must be readable.
     #[test]
     fn what_is_not_finite_is_read_as_nan() {
         let mut record = record();

@@ -1,4 +1,5 @@
-//! The rules of complete BSDFs: what is drawn and evaluated is finite, in range and on its side.
+//! The rules of complete BSDFs: what is drawn and evaluated is finite, in range and on the right
+//! side.
 
 use glam::Vec3;
 
