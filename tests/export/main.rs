@@ -1,4 +1,4 @@
-//! What is exported holds what the set does.
+//! Exported files hold the values of the set.
 
 #[path = "../common/mod.rs"]
 mod common;
