@@ -103,8 +103,7 @@ fn a_part_reads_as_the_whole_does() {
         };
         set_of(albedo::bake(&need.spec(Quality::Draft, Precision::F32).unwrap()).unwrap(), None)
     };
-    // The whole extends beyond the part on every side, so that both interpolate in the same
-    // windows.
+    // The whole extends beyond the part on every side, so that windows are the same.
     let (part, whole) = (of(domain([2.6, 2.9], [0.0, 0.08])), of(domain([2.2, 3.6], [0.0, 0.2])));
     assert!(part.tables()[0].values.len() < whole.tables()[0].values.len());
     for gamma in [2.6, 2.77, 2.9] {
@@ -187,8 +186,7 @@ fn imported_scenes_are_given_albedos_that_are_quick_and_have_to_ask_for_others()
     let asked = json(at, &["plan", "b.pbrt", "--albedo"]);
     let asked_for = asked["albedo"].as_array().unwrap().iter();
     assert_eq!(asked_for.map(|of| of["names"].as_array().unwrap().len()).sum::<usize>(), 8);
-    // The offered cost is the difference of the totals, for the bytes of the file with its header
-    // and for the time.
+    // The offered cost is the difference of the totals, in bytes and in time.
     for of in ["bytes", "seconds"] {
         let [with, without] = [&asked, &shown].map(|plan| plan["total"][of].as_f64().unwrap());
         let offered = shown["offered"]["cost"][of].as_f64().unwrap();

@@ -1,5 +1,4 @@
-//! Certificates hold at edges, at corners and in the middle of every cell, where random points are
-//! rare.
+//! Certificates hold at edges, corners and middles of cells, where random points are rare.
 //!
 //! The points here are chosen independently of those of the certificates, and the errors are
 //! computed by code of this test.
@@ -36,8 +35,7 @@ fn along(axis: &Axis) -> Vec<f64> {
     axis.nodes.windows(2).flat_map(cell).chain([axis.ends()[1]]).collect()
 }
 
-/// Random numbers for a mirrored axis: those of its points, and others near its ends and its
-/// middle.
+/// Random numbers for a mirrored axis: those of its points, others near its ends and its middle.
 fn numbers(axis: &Axis) -> Vec<f32> {
     let half: f32 = 0.5;
     let mut all = vec![0.0, 1e-7, half.next_down(), half, half.next_up(), 1_f32.next_down(), 1.0];
@@ -64,7 +62,6 @@ fn signed(shape: &Shape, x: f64) -> SignedSlope {
     SignedSlope { w: shape.asinh_slope(x.abs()), sign: if x < 0.0 { -1.0 } else { 1.0 } }
 }
 
-/// The set for one shape.
 fn single(gamma: f64, precision: Precision) -> Tables {
     let recipe = recipe(&[["it", "0.3", &gamma.to_string(), ""]]);
     baked(&recipe, Target::Quality(Quality::Draft, precision))
@@ -109,11 +106,10 @@ fn along_error(table: &Table, lobe: &StudentT, shape: &Shape) -> f64 {
 
 /// Asserts that no table errs by more than its certificate says, at all shapes of its axis in turn.
 ///
-/// Rounding differs from point to point: a certificate adds half an ulp for it to the measured
+/// For rounding, which differs between points, a certificate adds half an ulp to the measured
 /// error.
 fn hold(set: &Tables) {
-    // Where the heavy part is peeled off the error has two terms, which only the certificate adds
-    // up.
+    // With the heavy part peeled off the error has two terms, which only the certificate adds.
     let whole = |table: &&Table| table.kind != Kind::VisibleSlopePeeled;
     for table in set.tables().iter().filter(whole) {
         let error = |s: f64| {

@@ -1,5 +1,4 @@
-//! CSV files of `query` and `fit`: lines, units, columns, and the messages for files that are
-//! refused.
+//! CSV files of `query` and `fit`: lines, units, columns, and messages for refused files.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +7,6 @@ use crate::common::{ok, refused, run};
 
 const HEADER: &str = "sigma_x,sigma_y,gamma,theta,phi";
 
-/// Runs `query g1` on a text.
 fn query(at: &Path, text: &str, more: &[&str]) -> std::process::Output {
     fs::write(at.join("p.csv"), text).unwrap();
     run(at, &[&["query", "g1", "--input", "p.csv"], more].concat())
@@ -26,8 +24,7 @@ fn refusal(at: &Path, text: &str) -> String {
 fn a_row_of_query_has_its_file_and_the_line_of_an_editor() {
     let folder = tempfile::tempdir().unwrap();
     let rows = [
-        // An error in the last row, after blank lines and a field of several lines; and in the
-        // first.
+        // Errors in the last row, after blank lines and a field of several lines; in the first.
         ("\n{}id\n\n1,1,3,0.1,0,\"a\n\nb\"\n\n1,1,3,-1,0,c", 8, "theta = -1"),
         ("{}id\n1,1,3,x,0,\"a\nb\"\n1,1,3,0,0,b\n", 2, "theta \"x\" is not a number"),
         ("{}id\n1,1,3,0,0,a\n\n1,1,3,0\n", 4, "4 columns, and the header 6"),

@@ -127,8 +127,7 @@ fn opposite_and_mirrored_views_are_the_same_and_no_view_gains() {
             let moments = albedo.moments(v);
             assert!(moments.scale >= 0.0 && moments.bias >= 0.0 && moments.total() <= 1.0 + 1e-6);
         }
-        // At the normal every azimuth gives the same; views below the horizon are taken as grazing,
-        // and so is NaN.
+        // The normal has one albedo for every azimuth; views below the horizon and NaN are grazing.
         let normal = albedo.albedo(Vec3::Z);
         assert!((albedo.albedo(Vec3::new(1e-30, -1e-30, 1.0)) - normal).abs() < 1e-6);
         let grazing = albedo.albedo(Vec3::X);
@@ -279,8 +278,7 @@ fn the_commands_list_bake_keep_and_show_them() {
     let table = views(&set)[0];
     ok(at, &[&bake[..4], &["--out", "image", "--format", "exr"]].concat());
     assert_eq!(store::read(&at.join("image")).unwrap(), set);
-    // The estimate holds the doublings that are expected, of which this lobe may need one more or
-    // less.
+    // The estimate holds the expected doublings, of which this lobe may need one more or less.
     let one = encode(&Default::default(), std::slice::from_ref(table)).unwrap().len();
     let none = encode(&Default::default(), &[]).unwrap().len();
     // A set's formulas are counted once.
@@ -347,8 +345,7 @@ fn ellipsoids_are_bound_by_name_with_their_albedo() {
         (set.material("tilted").unwrap(), set.material_albedo("tilted").unwrap());
     for i in 0..8 {
         let v = direction(0.3 + 0.08 * f64::from(i), 0.8 * f64::from(i));
-        // Normals are drawn with density (v·m)⁺ D/(projected area); G1 is the clamped ratio of v·n
-        // to it.
+        // Normals are drawn with density (v·m)⁺ D/(projected area); G1 is v·n over it, clamped.
         let want = mean_reflected(&tilted, v, 200, |_, l| {
             tilted.reflection_weight(v, l, Masking::HeightCorrelated).into()
         });

@@ -71,8 +71,7 @@ pub(crate) fn mean(
     sum / (steps * steps) as f64
 }
 
-/// As [`mean`], over normals that reflect to a light above the surface; `worth` takes normal and
-/// light.
+/// As [`mean`], over normals that reflect above the surface; `worth` takes normal and light.
 pub(crate) fn mean_reflected(
     lobe: &impl MicrofacetDistribution,
     v: Vec3,

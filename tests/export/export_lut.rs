@@ -186,8 +186,7 @@ fn files_hold_the_same_values() {
     assert_eq!(ktx.levels().next().unwrap().data, halves);
 }
 
-/// All names that a header declares have a suffix, so that the texture may be named by a keyword of
-/// C.
+/// All names in a header have a suffix, so that a texture may be named by a keyword of C.
 #[test]
 fn headers_are_named_by_any_word() {
     for (name, channels) in [("int", Channels::E), ("sigma", Channels::ScaleBias)] {

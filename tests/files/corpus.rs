@@ -34,8 +34,7 @@ fn seeds_of_table_files_are_of_this_version() {
     }
 }
 
-/// The seed is an entry that a bake left in the cache; an entry of another version would be refused
-/// by its key.
+/// A bake left this entry in the cache; the key of another version would refuse it.
 #[test]
 fn the_seed_of_an_entry_is_believed() {
     assert!(entry(include_bytes!("../../fuzz/seeds/entry/gamma_3.safetensors")));

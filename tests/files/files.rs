@@ -1,5 +1,4 @@
-//! Damaged images: every truncation and every flipped bit of a small table gives an error or the
-//! identical table.
+//! Damaged images: any truncation or flipped bit of a small table gives an error or the same table.
 
 use std::io::Cursor;
 
@@ -99,8 +98,7 @@ fn written_anew(
     decode_exr(&file.into_inner())
 }
 
-/// An image that the writer would not write is refused before it is decoded, even with the same
-/// pixels.
+/// An image that the writer would not write is refused undecoded, even with the same pixels.
 #[test]
 fn an_image_written_anew_by_another_program_is_refused() {
     let (set, file) = small_image();

@@ -170,8 +170,7 @@ fn both_precisions_mean_the_same() {
 fn narrow_lobes_say_that_they_are_mirrors() {
     let tables = Tables::embedded();
     assert!(tables.student_t(9.9e-4, 3.0).unwrap().is_effectively_smooth());
-    // The mean slope of GGX is alpha; near γ = 3/2 a tenth of the visible normals is far from the
-    // normal.
+    // The mean slope of GGX is alpha; near γ = 3/2 a tenth of visible normals is far off n.
     assert!(tables.student_t(9.9e-4, 2.0).unwrap().is_effectively_smooth());
     assert!(!tables.student_t(1.01e-3, 2.0).unwrap().is_effectively_smooth());
     assert!(!tables.student_t(9.9e-4, 1.501).unwrap().is_effectively_smooth());
@@ -199,8 +198,7 @@ fn an_ellipsoid_knows_the_density_of_its_samples() {
             }
         }
     }
-    // The mean over samples of the analytic over the drawn density is the integral of the analytic
-    // one.
+    // The mean over samples of analytic over drawn density is the former's integral.
     const STEPS: u16 = 200;
     for v in directions().filter(|v| v.z > 0.1) {
         let at = |i: u16| (f32::from(i) + 0.5) / f32::from(STEPS);

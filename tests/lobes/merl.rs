@@ -16,7 +16,6 @@ fn fit(material: &Material) -> Comparison {
     Fitter::default().fit(&measured, &Meter::default()).unwrap()
 }
 
-/// A material of one lobe.
 fn single(lobe: &'static str, f0: [f64; 3], lambert: [f64; 3], noise: f64) -> Material {
     Material { lobes: vec![(1.0, lobe)], f0, lambert, noise }
 }
@@ -51,8 +50,7 @@ fn what_was_made_is_found_again_and_no_other_fit_is_better() {
         assert_near(&fits.student_t, sigma_gamma, &material, tolerance);
         assert!(fits.student_t.error <= fits.ggx.error);
         assert!(fits.student_t.error <= fits.beckmann.error);
-        // The remaining error is on average half of the largest noise, less what noise takes from
-        // the sums.
+        // On average half of the largest noise is left, less what it takes from the sums.
         let left = fits.student_t.error / (0.5 * material.noise).max(1e-4);
         assert!(left < 1.01, "{left}");
         match sigma_gamma[1] {

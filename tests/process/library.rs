@@ -165,8 +165,7 @@ fn shares_of_another_scene_or_version_are_said_and_not_mixed_in() {
     }
     let entries = |name: &&String| name.ends_with(".safetensors");
     for name in names(&folder.join("cache")).iter().filter(entries) {
-        // An entry's name depends on its key, which holds the versions: other versions have other
-        // names.
+        // Names depend on keys, which hold the versions: other versions have other names.
         let other = name.chars().rev().collect::<String>().replace("srosnetefas.", "");
         let cache = folder.join("cache");
         fs::rename(cache.join(name), cache.join(other + ".safetensors")).unwrap();

@@ -1,5 +1,5 @@
-//! The program as a process: killed, out of disk, denied access, run in parallel, with too little
-//! memory or threads.
+//! The program as a process: killed, out of disk, denied access, run in parallel, out of memory or
+//! threads.
 #![cfg(unix)]
 
 use std::collections::BTreeMap;
@@ -78,8 +78,7 @@ fn read(folder: &Path) -> Vec<String> {
 const OLD: [&str; 2] = ["old 1", "old 2"];
 const NEW: [&str; 2] = ["new 1", "new 2"];
 
-/// 8 kills, or as many as `MICROFACET_KILLS` says. Each bake writes other kinds of files than the
-/// one before.
+/// 8 kills, or `MICROFACET_KILLS`. Each bake writes other kinds of files than the one before.
 #[test]
 fn killed_at_any_moment_one_whole_set_is_there() {
     let kills: u32 = std::env::var("MICROFACET_KILLS").map_or(8, |n| n.parse().unwrap());

@@ -2,8 +2,8 @@
 
 use crate::{Folder, assert_not_understood, assert_refused, load};
 
-/// Checks the line and column of an error; `marked` is a scene with a `$` before the error, which
-/// is taken out.
+/// Checks the line and column of an error: `$` in `marked` is taken out, and stands before the
+/// error.
 fn check(name: &str, marked: &str, message: &str) {
     let before = marked.split('$').next().unwrap();
     let line = 1 + before.matches('\n').count();

@@ -34,16 +34,14 @@ pub struct AlbedoTable {
     pub view: ViewBlend,
     /// Nodes along the view.
     pub views: usize,
-    /// E − 1, and the excess of bias and of F82 over E times their values for a mirror: by σ, by
-    /// view.
+    /// E − 1, and the excess of bias and of F82 over E times those of a mirror: by σ, by view.
     pub values: Vec<[f32; 3]>,
     /// ln(1 − E_avg), so that small losses keep their order of magnitude between nodes, and the
     /// averages of bias and F82, at evenly spaced nodes between the same ends.
     pub averages: Vec<[f32; 3]>,
     /// The largest error of the averages between these nodes, of E, bias or F82.
     pub average_error: f64,
-    /// Errors of the table against the model, of E, bias and F82: for σ ≥ 0.01 and cos θ ≥ 0.02,
-    /// and elsewhere.
+    /// Errors of E, bias and F82 against the model: for σ ≥ 0.01 and cos θ ≥ 0.02, and elsewhere.
     pub errors: [Option<f64>; 2],
 }
 

@@ -6,13 +6,11 @@ use microfacet_sampler::port::ShapeTables;
 
 use super::{AlbedoTable, Shape};
 
-/// A member of a shape's description.
 pub(super) struct Member {
     pub(super) name: &'static str,
     pub(super) value: Value,
 }
 
-/// The value of a member.
 pub(super) enum Value {
     /// Yes or no.
     Flag(bool),
@@ -122,7 +120,6 @@ fn lobe(shape: &Shape) -> Vec<Member> {
     members.map(|(name, value)| Member { name, value }).into()
 }
 
-/// The members of a table of albedos.
 fn albedo(table: &AlbedoTable) -> Vec<Member> {
     let [values, averages] = names(table);
     let [first, last] = table.ends;

@@ -223,8 +223,7 @@ impl Builder {
         }
     }
 
-    /// As [`did_you_mean`], but empty once `limits::HINTS` names were compared, since each takes
-    /// time.
+    /// As [`did_you_mean`], but empty after `limits::HINTS` compared names, since each takes time.
     pub(super) fn did_you_mean<'a>(
         &self,
         word: &str,

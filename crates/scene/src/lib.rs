@@ -23,8 +23,7 @@
 //! material then counts as used.
 //!
 //! Outside recipes no content of a material makes the scene an error. Errors are another kind of
-//! document, a wrong grammar or version of the file, includes in a circle, and a size above the
-//! limits.
+//! document, a wrong grammar or version, includes in a circle, and a size above the limits.
 //!
 //! Scenes far larger than any that exist are refused, with the limit: reading ends within seconds
 //! and about 1 GB of memory, whatever a file holds. Only regular files are read.

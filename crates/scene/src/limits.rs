@@ -13,8 +13,7 @@ pub(crate) const TEXT: u64 = 128 << 20;
 pub(crate) const ENTRIES: usize = 1 << 20;
 /// Bytes of a pbrt scene, unpacked and with all that is included, most of which is geometry.
 pub(crate) const PBRT: u64 = 1 << 30;
-/// Bytes of the materials and textures of a pbrt scene. Short parameters take 30 times as much
-/// memory.
+/// Bytes of the materials and textures of a pbrt scene. Short ones take 30 times as much memory.
 pub(crate) const PBRT_HELD: u64 = 16 << 20;
 /// Parameters of one pbrt directive, and of all attributes in force; folders that a Mitsuba scene
 /// adds with `<path>`, in each of which every file is looked for.
@@ -41,8 +40,7 @@ pub(crate) const WARNINGS: usize = 10_000;
 pub(crate) const UNKNOWN: u64 = 100;
 /// Names that are compared for suggestions of similar ones: 10 000 long ones take up to a second.
 pub(crate) const HINTS: u64 = 200_000;
-/// Bytes of one image file, and of memory for decoding it: a PNG of 8192 x 8192 pixels of 16-bit
-/// RGBA.
+/// Bytes of one image file, and of memory to decode it: a PNG of 8192 x 8192 pixels, 16-bit RGBA.
 pub(crate) const IMAGE: u64 = 512 << 20;
 /// Bytes of all images of a scene, read and decoded; a gigabyte takes two seconds.
 pub(crate) const IMAGES: u64 = 8 << 30;

@@ -1,13 +1,11 @@
-//! XML as a tree of owned elements with their places, shared by the readers of Mitsuba and
-//! MaterialX.
+//! XML as a tree of elements with their places, for the readers of Mitsuba and MaterialX.
 //!
 //! The parsers of renderers check no namespaces, take a raw "<" or "&" in an attribute as a
 //! character, and accept a declaration anywhere. Documents of MaterialX have all of these: prefixes
 //! that nothing declares, tokens such as `<UDIM>` in file names, "this & that" in a description,
 //! and a space before `<?xml`. So these documents are read, and so is what the parser does not
 //! check: characters and names that XML does not have, attributes without a space between them, and
-//! a document type. A document type that declares entities is refused, since their values would be
-//! left out.
+//! a document type. One that declares entities is refused, since their values would be left out.
 
 use std::collections::HashSet;
 use std::hash::{Hash, Hasher};
@@ -108,8 +106,7 @@ impl Reader {
     /// Reads the root element of a file that `place` includes under a name, to be followed by
     /// [`Includes::leave`].
     ///
-    /// `None`, with a warning that ends with `said`, if there is no such file or it is not well
-    /// formed.
+    /// `None`, with a warning that ends with `said`, if the file is missing or not well formed.
     pub(super) fn include(
         &mut self,
         (name, file): (&str, &Path),
@@ -129,7 +126,6 @@ impl Reader {
         }
     }
 
-    /// The root element of a text.
     fn root(&self, file: &Path, text: Vec<u8>) -> Result<Element> {
         let text = String::from_utf8(text).map_err(|_| {
             let why = "is no text in UTF-8";
@@ -165,8 +161,7 @@ impl Reader {
                 }
                 Event::End(_) => {
                     let Some(mut ended) = open.pop() else { continue };
-                    // Most elements have few children; the capacity for four takes more memory than
-                    // the element.
+                    // Most have few children; capacity for four takes more than the element.
                     ended.children.shrink_to_fit();
                     match open.last_mut() {
                         Some(outer) => outer.children.push(ended),
@@ -237,7 +232,6 @@ impl Reader {
         Ok(Element { tag: name, attributes, children: Vec::new(), place })
     }
 
-    /// Counts an element or an attribute.
     fn take(&self, place: &Place) -> Result<()> {
         if self.parts.take(1) {
             return Ok(());
@@ -250,7 +244,6 @@ impl Reader {
     }
 }
 
-/// The offset of an error in a tag.
 fn offset(error: &AttrError) -> usize {
     match *error {
         AttrError::ExpectedEq(offset)

@@ -27,8 +27,7 @@ pub struct Record {
     pub rejected: usize,
     /// Allowed deviation of an integral of the density from 1.
     pub pdf_tolerance: f64,
-    /// The integral of the density that is furthest from 1; `None` without configurations, or if
-    /// it is not finite.
+    /// The integral of the density furthest from 1; `None` without configurations or if not finite.
     pub worst_pdf_integral: Option<f64>,
     /// The configurations, the smallest p-value first.
     pub configurations: Vec<Tested>,

@@ -1,5 +1,4 @@
-//! Materials that are not understood, and deviations from the specification, while the rest is
-//! read.
+//! Materials that are not understood, and other deviations, while the rest is read.
 
 use microfacet_baker::scene::{Roughness, Scene};
 

@@ -249,8 +249,7 @@ fn a_node_that_is_a_part_of_itself_ends() {
     assert!(scene.ignored[0].reason.contains("connected to itself"), "{}", scene.ignored[0]);
 }
 
-/// Each of many layers has the next one twice: followed each time, they would take exponential
-/// time.
+/// Each of many layers has the next one twice: without a memory that takes exponential time.
 #[test]
 fn shared_and_deep_graphs_are_followed_once() {
     let layer = |i: usize, next: &str| {

@@ -5,8 +5,7 @@ use microfacet_tables::axis::{LogShape, ViewBlend};
 /// The most axes of a texture.
 pub(super) const AXES: usize = 3;
 
-/// The smallest σ of a texel: below it the albedo depends on cot θ/σ alone, and at σ = 0 it is
-/// constant.
+/// The smallest σ of a texel. Below it the albedo depends on cot θ/σ alone; at 0 it is constant.
 const MIRROR: f64 = 1e-8;
 
 /// Coordinates in the first cell of roughnesses. With 3, the error of E for γ = 1.6 in 64 × 64
@@ -98,8 +97,7 @@ impl Along {
     }
 }
 
-/// An axis of a texture. A filter clamps coordinates to the first and the last texel, and is linear
-/// between two.
+/// An axis of a texture. A filter clamps to the first and the last texel, and is linear between.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TexelAxis {
     /// The quantity along it.
@@ -161,8 +159,7 @@ impl TexelAxis {
     }
 }
 
-/// The place at one coordinate along each axis; `gamma` holds for a texture without an axis of
-/// shapes.
+/// The place at one coordinate along each axis; without an axis of shapes γ is `gamma`.
 pub fn place(axes: &[TexelAxis], gamma: f64, at: &[f64]) -> Place {
     let mut place = Place { gamma, sigma: f64::NAN, cos: None };
     // Views last, since their coordinate depends on the material; axes may come in any order.

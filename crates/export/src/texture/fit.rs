@@ -10,12 +10,10 @@ use super::axis::{AXES, TexelAxis};
 /// How often the weights follow the errors. Compared with 20 rounds, 40 reduce the error by 0.2 %
 /// for GGX, and by 10 % for γ = 1.6 in 32 texels.
 const ROUNDS: usize = 25;
-/// The largest number of steps of conjugate gradients, and the reduction of the squared residual
-/// that ends them.
+/// The most steps of conjugate gradients, and the reduction of the squared residual that ends them.
 const STEPS: usize = 120;
 const ENOUGH: f64 = 1e-18;
-/// Weight of points outside the certified domain, so that texels that only they read are
-/// determined.
+/// Weight of points outside the certified domain; it determines texels that only they read.
 const LOOSE: f64 = 1e-4;
 /// Parts of the points that are summed each by a thread, and then in their order, so that sums are
 /// the same for any number of threads; and the fewest points of a part.

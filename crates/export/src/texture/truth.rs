@@ -78,8 +78,7 @@ pub struct Truth {
 }
 
 /// The albedos of `count` places with the shapes `gammas`, each a step of the stage; either all
-/// have a view or all are averages. A place is computed when it is used, since a large texture has
-/// 2²⁴.
+/// have a view or all are averages. Places are computed when used: a large texture has 2²⁴.
 pub(super) fn truths(
     gammas: impl Iterator<Item = f64>,
     count: usize,

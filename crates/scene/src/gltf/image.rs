@@ -88,7 +88,6 @@ impl<'a> Images<'a> {
         }
     }
 
-    /// An entry of a list by its number.
     fn entry(&self, list: &[&'a RawValue], index: u64, what: &str) -> Result<Object<'a>> {
         Object::new(self.place, String::new(), self.text(list, index, what)?)
     }
@@ -105,8 +104,7 @@ impl<'a> Images<'a> {
             texture::charge(left, uri.len() as u64)?;
             return data_uri(&uri);
         }
-        // Images may share a buffer view and a buffer as large as the document, so every use is
-        // counted.
+        // Images may share a buffer as large as the document, so every use is counted.
         let charged = |list: &[&'a RawValue], index: u64, what: &str| {
             let text = self.text(list, index, what).map_err(said)?;
             texture::charge(left, text.get().len() as u64)?;

@@ -50,7 +50,6 @@ impl<'a> Importer<'a> {
         Ok(())
     }
 
-    /// Adds the main lobe.
     fn base(
         &mut self,
         name: &str,
@@ -130,8 +129,7 @@ fn reflects_nothing(material: &Object<'_>, extensions: &Object<'_>) -> Result<bo
         && !others.iter().any(|&other| extensions.members.contains_key(other)))
 }
 
-/// Schlick's reflectance with F90 = 1; `None` if the material has another Fresnel term or F0
-/// varies.
+/// Schlick's reflectance with F90 = 1; `None` if the Fresnel term is another or F0 varies.
 fn fresnel(material: &Object<'_>, extensions: &Object<'_>) -> Result<Option<Reflectance>> {
     let has_texture = |object: &Object<'_>, names: [&str; 2]| {
         names.iter().any(|&name| object.members.contains_key(name))

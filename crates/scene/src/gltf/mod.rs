@@ -25,8 +25,7 @@
 //!   `1.0`.
 //! - `extensionsRequired` lists what a reader has to know (3.12): a material with one of those that
 //!   is not known here is not understood. Other unknown extensions give a warning, unless they
-//!   leave the lobes as they are, and so do members that glTF does not have. `extras` may hold
-//!   anything.
+//!   leave the lobes as they are, and so do unknown members outside `extras`.
 //! - G2 is left to the renderer: appendix B and the anisotropy extension show one expression each.
 //!
 //! [spec]: https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html
@@ -157,7 +156,6 @@ struct Importer<'a> {
     read: HashMap<(u64, Channel), Result<Interval, String>>,
 }
 
-/// What meshes use.
 #[derive(Default)]
 struct Used {
     materials: BTreeSet<u64>,

@@ -155,8 +155,7 @@ impl<'a> Object<'a> {
     }
 }
 
-/// The message of a parser error without its line and column, which count from the start of the
-/// value.
+/// The message of a parser error without line and column, which count from the value's start.
 pub(super) fn message(error: &serde_json::Error) -> String {
     let text = error.to_string();
     let text = text.rsplit_once(" at line ").map_or(&text[..], |(message, _)| message);

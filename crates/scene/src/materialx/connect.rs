@@ -130,7 +130,6 @@ impl<'a> Reader<'a> {
         Ok(Some(scope))
     }
 
-    /// Counts a node that is followed.
     pub(super) fn count(&self, node: &Element) -> Result<()> {
         if self.left.take(1) {
             return Ok(());

@@ -27,8 +27,7 @@ impl<'a> Reader<'a> {
         range
     }
 
-    /// As [`Self::value`], within its recursion. Every circle of connections passes through an
-    /// input.
+    /// As [`Self::value`], for its recursion. Every circle of connections passes an input.
     fn connected(
         &mut self,
         input: &'a Element,
@@ -168,8 +167,7 @@ impl<'a> Reader<'a> {
             "artistic_ior" => {
                 let (r, edge) = (input("reflectivity", 0.944)?, input("edge_color", 0.998)?);
                 let of = if output == Some("extinction") { 1 } else { 0 };
-                // Only the ends of a range are evaluated: an index of refraction is read only if it
-                // is constant.
+                // Only the ends of a range: an index of refraction is read if it is constant.
                 let [a, b] = [(r.min, edge.min), (r.max, edge.max)];
                 Interval::point(artistic(a.0, a.1)[of])
                     .union(Interval::point(artistic(b.0, b.1)[of]))

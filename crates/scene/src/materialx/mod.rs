@@ -36,8 +36,7 @@
 //! - Defaults are those of the node definitions: `standard_surface` 1.0.1, `open_pbr_surface` 1.1,
 //!   `gltf_pbr` 2.0.1, `UsdPreviewSurface` 2.6.
 //! - BSDFs are followed through `surface`, `layer`, `mix`, `add` and `multiply`, and through the
-//!   graphs of nodes that the document defines itself (`nodedef`); branches of weight 0 are left
-//!   out.
+//!   graphs of nodes that the document defines itself (`nodedef`); not through weights of 0.
 //! - A shader appears once for each `surfacematerial` that uses it, under that name, or else under
 //!   its own. A material is used if a `materialassign` names it, or if the document has none.
 //! - An input with an `output` alone is connected to that output of the document. Inputs that the

@@ -111,8 +111,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Notes what an input of a node is connected to; if that is undefined, the other inputs are
-    /// still followed.
+    /// Adds what an input is connected to; if that is undefined, other inputs are still followed.
     fn follow(&self, at: At<'a>, name: &'static str, film: bool, parts: &mut Parts<'a>) {
         let Some(input) = self.index.given(at.node, name) else { return };
         match self.source(At::new(input, at.scope)) {

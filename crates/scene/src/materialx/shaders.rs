@@ -14,7 +14,6 @@ pub(super) const LEAST_ALPHA: f64 = 1e-8;
 /// The lower limit of α in `gltf_pbr`.
 const LEAST_GLTF_ALPHA: f64 = 1e-5;
 
-/// What a shading model consists of.
 #[derive(Default)]
 pub(super) struct Model {
     pub(super) lobes: Vec<Lobe>,
@@ -147,8 +146,7 @@ impl<'a> Reader<'a> {
         }
 
         let mut model = Model::default();
-        // `specular_weight` is the weight of the metal's lobe; for the dielectric it only changes
-        // the index.
+        // `specular_weight` weights the metal's lobe; of the dielectric it only changes the index.
         if specular.max > 0.0 || transmission.max > 0.0 && metalness.min < 1.0 {
             let fresnel = match metal {
                 _ if film => None,
@@ -255,8 +253,7 @@ impl<'a> Reader<'a> {
         if metallic.max + specular.max > 0.0 {
             let fresnel = match metal {
                 Metal::All => self.colour(at, "baseColor", [0.16; 3])?.and_then(schlick),
-                // The dielectric has a constant reflectance with the weight 0.08 `specular`: no
-                // Fresnel term.
+                // The dielectric's reflectance is constant, times 0.08 `specular`: no Fresnel term.
                 Metal::None | Metal::Some => None,
             };
             model.push(None, base.map(|(r, anisotropy)| stretched(r, anisotropy)), fresnel);

@@ -103,8 +103,7 @@ impl<'a> Reader<'a> {
                 let scale = eta.map_rising(|eta| (0.65 * eta - 0.35).max(0.0));
                 let transmission = self.principled(bsdf, scale)?;
                 let fresnel = self.fresnel_or_warn(constant_dielectric(eta, bsdf))?;
-                // A tint mixes Schlick's reflectance into the reflection, but not into the
-                // transmission.
+                // A tint mixes Schlick's reflectance into the reflection alone.
                 let tint = self.weight(bsdf, "spec_tint");
                 let untinted = tint.map(|tint| fresnel.filter(|_| tint.max == 0.0));
                 let untinted = self.fresnel_or_warn(untinted)?;

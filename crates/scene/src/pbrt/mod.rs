@@ -65,7 +65,6 @@ use crate::include::Includes;
 use crate::limits;
 use crate::references::Memo;
 
-/// The directives that are followed.
 const FOLLOWED: &str = "Attribute AttributeBegin AttributeEnd Import Include MakeNamedMaterial \
                         Material NamedMaterial ObjectBegin ObjectEnd Shape Texture";
 
@@ -332,8 +331,7 @@ impl Reader {
         Ok(())
     }
 
-    /// The name of a material that has none: its type, its file relative to the scene, and its
-    /// line.
+    /// A name for a material that has none: its type, its file relative to the scene, its line.
     fn by_place(&self, class: &str, place: &Place) -> String {
         let class = if class.is_empty() { "material" } else { class };
         let file = place.file.strip_prefix(&self.folder).unwrap_or(&place.file);

@@ -71,8 +71,7 @@ fn is_of((classes, ..): &Row, class: &str) -> bool {
 }
 
 impl Reader {
-    /// Warns of parameters that a class does not have, or has with another type; says nothing of a
-    /// class in no row.
+    /// Warns of parameters that a class lacks or has with another type, if the class is in a row.
     pub(super) fn check_parameters(
         &mut self,
         rows: &[Row],

@@ -38,7 +38,6 @@ impl Token<'_> {
     }
 }
 
-/// The tokens of a file.
 pub(super) struct Tokens<'a> {
     text: &'a [u8],
     lines: Lines<'a>,

@@ -67,8 +67,7 @@ impl Row {
         -TOLERANCE <= self.returned - 1.0 && self.returned - 1.0 <= most && self.sampled_well()
     }
 
-    /// The difference of the mean of samples from `returned`, beyond the error of quadrature, in
-    /// standard errors.
+    /// The error of the mean of samples in standard errors, beyond the error of quadrature.
     pub fn standard_errors(&self) -> Option<f64> {
         // For mirrors the quadrature errs by up to 9e-5.
         const QUADRATURE: f64 = 1e-4;
@@ -192,8 +191,7 @@ fn row(
     let whole = specimen.bsdf(tables)?;
     let v = direction(cos_theta);
     let single = single(&specimen, cos_theta)?;
-    // Of plastic only lights outside count: it does not return what the facets of its coat
-    // transmit.
+    // Of plastic only lights outside count: its coat's transmission is not returned.
     let sides: &[f32] =
         if matches!(specimen.surface, Surface::Dielectric(_)) { &[1.0, -1.0] } else { &[1.0] };
     let returned = single + broad(&whole, &specimen.facets().bsdf(tables)?, v, sides);
@@ -239,8 +237,7 @@ fn single(specimen: &Specimen, cos_theta: f32) -> Result<f64, Unmade> {
     Ok(reflected + transmitted)
 }
 
-/// ∫ of the f of `whole` minus that of `facets` times the cosine, over lights on some sides of the
-/// surface.
+/// ∫ (f of `whole` − f of `facets`) cos θ over the lights on some sides of the surface.
 fn broad(whole: &AnyBsdf, facets: &AnyBsdf, v: Vec3, sides: &[f32]) -> f64 {
     over_lights(|sin, cos| {
         let more = |side: f32| {
@@ -252,7 +249,6 @@ fn broad(whole: &AnyBsdf, facets: &AnyBsdf, v: Vec3, sides: &[f32]) -> f64 {
     })
 }
 
-/// The mean weight of samples.
 fn sampled(bsdf: &AnyBsdf, v: Vec3, samples: usize, seed: u64) -> Estimate {
     let mut random = StdRng::seed_from_u64(seed);
     let (mut sum, mut squares) = (0.0, 0.0);

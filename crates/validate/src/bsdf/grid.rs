@@ -1,5 +1,4 @@
-//! Cells of the sphere of lights, small where light is dense, and the integral of a density over
-//! each.
+//! Cells of the sphere of lights, small where light is dense, and integrals over each.
 //!
 //! Coordinates are the elevation above the surface and the azimuth, from the components of a light
 //! in double precision: both resolve single precision at the horizon and at the poles alike. The
@@ -44,7 +43,6 @@ enum Node {
     Leaf(usize),
 }
 
-/// Cells of the sphere.
 #[derive(Clone, Debug)]
 pub(super) struct Grid {
     /// The azimuth that the others are counted from, opposite to the seam.

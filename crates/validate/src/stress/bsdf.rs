@@ -1,5 +1,4 @@
-//! The rules of complete BSDFs: what is drawn and evaluated is finite, in range and on the right
-//! side.
+//! The rules of complete BSDFs: what is drawn and evaluated is finite, in range and on its side.
 
 use glam::Vec3;
 

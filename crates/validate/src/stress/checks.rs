@@ -193,8 +193,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Tests a sampled normal and the densities at it. `last` is the tilt at the previous random
-    /// number.
+    /// Tests a sampled normal and its densities. `last` is the tilt at the previous random number.
     fn normal(&mut self, at: &Point, last: &mut f64) {
         self.report.region(at).points += 1;
         let v = at.view();
@@ -223,8 +222,7 @@ impl Checker<'_> {
         self.density(truth[0], "model d negative, NaN or inf", at);
         self.density(truth[1], "model pdf negative, NaN or inf", at);
         for (i, (got, want)) in [d, pdf].into_iter().zip(truth).enumerate() {
-            // Outside this range f32 cannot hold the value; at the silhouette v·m is mostly
-            // rounding.
+            // Outside this range f32 cannot hold it; at the silhouette v·m is mostly rounding.
             if (1e-30..1e30).contains(&want) && (i == 0 || facing > 1e-3) {
                 self.report.region(at).errors[1 + i].see((f64::from(got) / want - 1.0).abs(), at);
             }
@@ -242,8 +240,7 @@ impl Checker<'_> {
         let rho = ((sx * v.x) * (sx * v.x) + (sy * v.y) * (sy * v.y)).sqrt();
         let [sx, sy] = [sx, sy].map(f64::from);
         let (v, m) = (v.as_dvec3(), m.as_dvec3());
-        // The sampler treats views this close to the normal as the normal, whose azimuth is
-        // arbitrary.
+        // The sampler treats these views as the normal, whose azimuth is arbitrary.
         let (vx, vy) = if rho < 1e-18 { (1.0, 0.0) } else { (sx * v.x, sy * v.y) };
         let rho = vx.hypot(vy);
         let (x, y) = (m.x / sx, m.y / sy);

@@ -1,5 +1,4 @@
-//! The description of a texture as JSON: a file of its own, and inside the formats that can hold
-//! it.
+//! The description of a texture as JSON: a file, and inside the formats that can hold it.
 
 use serde_json::{Map, Value, json};
 
