@@ -2,9 +2,9 @@
 //! line: one shape γ, or a range of them as a volume, and the averages over all views.
 //!
 //! The coordinate of the view follows the roughness, so that E is smooth where it changes within
-//! the roughness of the horizon. The values are not the model's at the texels: they are fitted so
-//! that what the filter reads between texels is closest to the model. [`engine`] writes the
-//! textures that engines read today.
+//! the roughness of the horizon. Up to [`MOST_FITTED`] texels the values are not the model's: they
+//! are fitted so that what the filter reads between texels is closest to the model. [`engine`]
+//! writes the textures that engines read today.
 
 mod axis;
 mod certificate;

@@ -2,7 +2,7 @@
 //!
 //! [`chi_square`] compares the directions drawn with the density, cell by cell of a `grid` that is
 //! made for each [`configuration`] of BSDF and view. [`furnace`] tests whether white surfaces
-//! return all light, and [`reciprocity`] whether f stays the same when view and light are
+//! return all light, and [`reciprocity`] whether f/n² stays the same when view and light are
 //! exchanged. A [`specimen`] is a BSDF as data, and bakes the albedos that it needs.
 
 pub mod chi_square;
