@@ -24,7 +24,7 @@ fn load(bytes: &[u8]) {
     albedos(&set);
 }
 
-/// An albedo is a share of light, whatever the tables hold.
+/// Checks that albedos are in [0, 1], whatever the tables hold.
 fn albedos(set: &microfacet_sampler::Tables) {
     use microfacet_sampler::albedo::FresnelAlbedo;
     use microfacet_sampler::Masking;
@@ -82,8 +82,8 @@ fn index(bytes: &[u8]) {
 #[allow(dead_code)]
 const ENTRY: &str = "[[material]]\nname = \"a\"\nsigma = 0.3\ngamma = 3\n";
 
-/// Puts bytes in the place of a cache's only entry, with a checksum that is right, and returns
-/// whether they are believed; then they serve what was asked for.
+/// Replaces a cache's only entry by bytes, with a correct checksum, and returns whether the cache
+/// accepts them; accepted bytes must serve the request.
 #[allow(dead_code)]
 fn entry(bytes: &[u8]) -> bool {
     use microfacet_baker::cache::Cache;

@@ -28,7 +28,7 @@ fn plan(materials: &[[&str; 4]], albedo: AlbedoWish) -> Plan {
     sets::plan(&recipe(materials), Options { albedo, ..Options::default() })
 }
 
-/// The part of a plan that is about albedos, of what asks for them.
+/// The albedos of a plan, for the materials that ask for them.
 fn albedos_of(materials: &[[&str; 4]]) -> Plan {
     let plan = plan(materials, AlbedoWish::Auto);
     Plan { shapes: Vec::new(), distributions: Vec::new(), ..plan }
@@ -103,8 +103,7 @@ fn a_part_reads_as_the_whole_does() {
         };
         set_of(albedo::bake(&need.spec(Quality::Draft, Precision::F32).unwrap()).unwrap(), None)
     };
-    // The whole has nodes on every side of the part's, so that the interpolation windows are the
-    // same.
+    // The whole extends beyond the part on every side, so that windows are the same.
     let (part, whole) = (of(domain([2.6, 2.9], [0.0, 0.08])), of(domain([2.2, 3.6], [0.0, 0.2])));
     assert!(part.tables()[0].values.len() < whole.tables()[0].values.len());
     for gamma in [2.6, 2.77, 2.9] {
@@ -187,7 +186,7 @@ fn imported_scenes_are_given_albedos_that_are_quick_and_have_to_ask_for_others()
     let asked = json(at, &["plan", "b.pbrt", "--albedo"]);
     let asked_for = asked["albedo"].as_array().unwrap().iter();
     assert_eq!(asked_for.map(|of| of["names"].as_array().unwrap().len()).sum::<usize>(), 8);
-    // What it would add is what it adds, to the file with its header and to the time.
+    // The offered cost is the difference of the totals, in bytes and in time.
     for of in ["bytes", "seconds"] {
         let [with, without] = [&asked, &shown].map(|plan| plan["total"][of].as_f64().unwrap());
         let offered = shown["offered"]["cost"][of].as_f64().unwrap();
@@ -301,7 +300,7 @@ fn transmitted(set: &Tables, name: &str, masking: Masking, cos: f32, face: Diele
     })
 }
 
-/// Whether a table is under the exact reflectance of something.
+/// Whether a table is of an exact reflectance.
 fn is_exact(table: &&Table) -> bool {
     table.subject.reflectance.is_some_and(|reflectance| reflectance != Reflectance::Mirror)
 }
@@ -334,7 +333,7 @@ fn a_range_of_indices_has_an_axis() {
             }
         }
     }
-    // Everywhere a value in [0, 1], and no step where total reflection sets in.
+    // Every value is in [0, 1], and there is no step at the critical angle.
     let albedo = set.material_dielectric_albedo("any", 1.5).unwrap();
     let critical = (1.0_f32 - 1.0 / 2.25).sqrt();
     let ends = [f32::NAN, -1.0, 0.0, 1e-40, 1e-7, 1.0 - f32::EPSILON, 1.0, f32::INFINITY];
@@ -361,8 +360,8 @@ fn a_range_of_indices_has_an_axis() {
     }
 }
 
-/// The largest error of either share of light seen from inside a dielectric, of a draft for a lobe
-/// of σ = 0.3 and a range of indices: at some indices and views.
+/// The largest error of the reflected and the transmitted share of light seen from inside a
+/// dielectric, at some indices and views, for a draft for a lobe of σ = 0.3 and a range of indices.
 fn inside(gamma: f64, indices: [f64; 2], etas: &[f64], views: &[f64]) -> f64 {
     let lobe = AlbedoLobe::student_t([0.3; 2], gamma);
     let side = Side::Dense;
@@ -388,7 +387,7 @@ fn inside(gamma: f64, indices: [f64; 2], etas: &[f64], views: &[f64]) -> f64 {
     worst
 }
 
-/// An end at infinity is within its own rounding of every index, and once was taken for it.
+/// The rounding of an end at infinity is infinite, so every index could be taken for that end.
 #[test]
 fn indices_up_to_infinity_are_told_apart() {
     let views = [0.1, 0.5, 0.9, 1.0];

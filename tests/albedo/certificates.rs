@@ -1,5 +1,4 @@
-//! Certificates hold where a search at random would not look: on edges, at corners and in the
-//! middle of every cell.
+//! Certificates hold at edges, corners and middles of cells, where random points are rare.
 //!
 //! The points here are chosen independently of those of the certificates, and the errors are
 //! computed by code of this test.
@@ -27,17 +26,16 @@ use rayon::prelude::*;
 
 use crate::sets::{DRAFT, baked, draft, outside, recipe, set_of};
 
-/// Places in a cell, as parts of its width.
+/// Points of a cell, as fractions of its width.
 const PARTS: [f64; 7] = [0.0, 0.125, 0.3, 0.375, 0.5, 0.625, 0.8];
 
-/// Both ends of an axis and some places in each of its cells.
+/// Both ends of an axis and the points of each of its cells.
 fn along(axis: &Axis) -> Vec<f64> {
     let cell = |pair: &[f64]| PARTS.map(|w| pair[0] + w * (pair[1] - pair[0]));
     axis.nodes.windows(2).flat_map(cell).chain([axis.ends()[1]]).collect()
 }
 
-/// Random numbers for a mirrored axis: those of the same places, and others near its ends and its
-/// middle.
+/// Random numbers for a mirrored axis: those of its points, others near its ends and its middle.
 fn numbers(axis: &Axis) -> Vec<f32> {
     let half: f32 = 0.5;
     let mut all = vec![0.0, 1e-7, half.next_down(), half, half.next_up(), 1_f32.next_down(), 1.0];
@@ -64,7 +62,6 @@ fn signed(shape: &Shape, x: f64) -> SignedSlope {
     SignedSlope { w: shape.asinh_slope(x.abs()), sign: if x < 0.0 { -1.0 } else { 1.0 } }
 }
 
-/// The set for one shape.
 fn single(gamma: f64, precision: Precision) -> Tables {
     let recipe = recipe(&[["it", "0.3", &gamma.to_string(), ""]]);
     baked(&recipe, Target::Quality(Quality::Draft, precision))
@@ -109,11 +106,10 @@ fn along_error(table: &Table, lobe: &StudentT, shape: &Shape) -> f64 {
 
 /// Asserts that no table errs by more than its certificate says, at all shapes of its axis in turn.
 ///
-/// Rounding differs from point to point: a certificate adds half an ulp for it to the measured
+/// For rounding, which differs between points, a certificate adds half an ulp to the measured
 /// error.
 fn hold(set: &Tables) {
-    // Where the heavy part is peeled off the error has two parts, which only the certificate adds
-    // up.
+    // With the heavy part peeled off the error has two terms, which only the certificate adds.
     let whole = |table: &&Table| table.kind != Kind::VisibleSlopePeeled;
     for table in set.tables().iter().filter(whole) {
         let error = |s: f64| {
@@ -296,8 +292,8 @@ fn no_view_errs_by_more(recipe: &str, lobe: &Ellipsoid, views: impl Iterator<Ite
     }
 }
 
-/// E of correlated masking has a kink where G1 of the view reaches its clamp, and its table its
-/// largest errors.
+/// E of height-correlated masking has a kink where G1 of the view reaches its clamp; the errors of
+/// its table are largest there.
 #[test]
 fn of_the_albedo_of_a_tilted_lobe() {
     let skew = Skew::new([0.3; 2], [0.1, 0.0, 0.0]).unwrap();
@@ -317,15 +313,15 @@ fn of_the_albedo_of_a_tilted_lobe() {
     no_view_errs_by_more(recipe, &lobe, on_it.into_iter().chain(anywhere(300)));
 }
 
-/// The largest error of E lies near a hill of another quantity.
+/// The largest error of E is near a local maximum of another quantity's error.
 #[test]
 fn of_the_albedo_of_an_anisotropic_lobe() {
     let lobe = Ellipsoid::new(Skew::new([0.6, 0.15], [0.0; 3]).unwrap(), 2.7).unwrap();
     no_view_errs_by_more("sigma = [0.6, 0.15]\ngamma = 2.7", &lobe, anywhere(1500));
 }
 
-/// Errors have more hills than are climbed, and a finer table has nodes in the middles of cells of
-/// the first.
+/// Errors have more local maxima than the search starts at, and the nodes of a finer table are in
+/// the middles of the first table's cells.
 #[test]
 fn of_the_albedo_of_a_brushed_lobe() {
     let lobe = Ellipsoid::new(Skew::new([0.01, 0.7], [0.0; 3]).unwrap(), 2.0).unwrap();

@@ -83,8 +83,7 @@ fn a_wrong_table_does_not_close() {
     assert!(survey(&set, &Stage::unwatched()).unwrap().iter().all(|survey| !survey.passed()));
 }
 
-/// Compensation adds no energy apart from the error of E: for tables of high quality, inside the
-/// promised domain.
+/// Compensation adds no energy beyond the error of E: tables of high quality, certified domain.
 #[test]
 fn compensation_makes_no_energy() {
     let set = set_of(bake_at(Quality::High), None);

@@ -1,5 +1,4 @@
-//! CSV files of `query` and `fit`: lines, units, columns, and what is said of a file that is
-//! refused.
+//! CSV files of `query` and `fit`: lines, units, columns, and messages for refused files.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +7,6 @@ use crate::common::{ok, refused, run};
 
 const HEADER: &str = "sigma_x,sigma_y,gamma,theta,phi";
 
-/// Runs `query g1` on a text.
 fn query(at: &Path, text: &str, more: &[&str]) -> std::process::Output {
     fs::write(at.join("p.csv"), text).unwrap();
     run(at, &[&["query", "g1", "--input", "p.csv"], more].concat())
@@ -26,7 +24,7 @@ fn refusal(at: &Path, text: &str) -> String {
 fn a_row_of_query_has_its_file_and_the_line_of_an_editor() {
     let folder = tempfile::tempdir().unwrap();
     let rows = [
-        // In the last row, after blank lines and a field of several lines; and in the first.
+        // Errors in the last row, after blank lines and a field of several lines; in the first.
         ("\n{}id\n\n1,1,3,0.1,0,\"a\n\nb\"\n\n1,1,3,-1,0,c", 8, "theta = -1"),
         ("{}id\n1,1,3,x,0,\"a\nb\"\n1,1,3,0,0,b\n", 2, "theta \"x\" is not a number"),
         ("{}id\n1,1,3,0,0,a\n\n1,1,3,0\n", 4, "4 columns, and the header 6"),
@@ -61,7 +59,7 @@ fn columns_of_query_are_found_once() {
     assert!(message.contains("p.csv: two columns have the name `phi`"), "{message}");
     assert!(header(&format!("{HEADER},id,id")).contains("`id`"));
     assert!(header(&format!("{HEADER},g1_exact")).contains("column `g1_exact` already"));
-    // Columns without a name are no duplicates, and other results no clash.
+    // Columns without a name are no duplicates, and only columns of results that are written clash.
     let text = format!("{HEADER},,,g1_exact\n1,1,3,0,0,,,\n");
     assert!(query(folder.path(), &text, &["--method", "table"]).status.success());
 }
@@ -91,7 +89,7 @@ fn query_reads_degrees_and_doubts_them() {
     let said = |text: &str| String::from_utf8(query(folder.path(), text, &[]).stderr).unwrap();
     assert!(said(&rows(60.0, 0.0)).contains("p.csv: line 2: theta = 60 must"));
     assert!(said(&rows(60.0, 0.0)).contains("--degrees"));
-    // Once a run, at the first row.
+    // One warning for a run, at the first row.
     let many = format!("{HEADER}\n1,1,3,0,6\n\n{}", "1,1,3,0,90\n".repeat(600));
     let doubt = "warning: p.csv: line 4: phi = 90 radians is 14.3 turns; if it is in degrees, add --degrees\n";
     assert_eq!(said(&many), doubt);
@@ -131,7 +129,7 @@ fn fit_speaks_in_the_unit_of_its_input_and_names_the_file() {
     assert!(
         text.contains("nothing below 0.5 degrees:") && text.contains("nothing above 8 degrees:")
     );
-    // So little is not 0.000 degrees.
+    // A small angle is not printed as 0.000 degrees.
     let text = run(fit("0,9\n1e-6,5\n2.5e-6,2\n", &["--degrees"]), true);
     assert!(text.contains("nothing above 2.5e-6 degrees:"), "{text}");
     let text = run(fit("0,9\n0.01,5\n0.025,2\n", &[]), true);

@@ -127,8 +127,7 @@ fn opposite_and_mirrored_views_are_the_same_and_no_view_gains() {
             let moments = albedo.moments(v);
             assert!(moments.scale >= 0.0 && moments.bias >= 0.0 && moments.total() <= 1.0 + 1e-6);
         }
-        // At the normal every azimuth gives the same; views below the horizon are taken as grazing,
-        // and so is NaN.
+        // The normal has one albedo for every azimuth; views below the horizon and NaN are grazing.
         let normal = albedo.albedo(Vec3::Z);
         assert!((albedo.albedo(Vec3::new(1e-30, -1e-30, 1.0)) - normal).abs() < 1e-6);
         let grazing = albedo.albedo(Vec3::X);
@@ -145,7 +144,7 @@ fn hemisphere(f: impl Fn(Vec3) -> f32) -> f64 {
     const N: usize = 200;
     let mut sum = 0.0;
     for (i, j) in (0..N).flat_map(|i| (0..N).map(move |j| (i, j))) {
-        // Even steps of x = √cos θ crowd views at grazing; 4x³ dx = 2 cos θ d(cos θ).
+        // Even steps of x = √cos θ place more views near grazing; 4x³ dx = 2 cos θ d(cos θ).
         let x = (i as f64 + 0.5) / N as f64;
         let cos = x * x;
         let phi = std::f64::consts::TAU * (j as f64 + 0.5) / N as f64;
@@ -200,7 +199,7 @@ fn a_wrong_table_is_noticed() {
     let middle = wrong.values.len() / 6 * 3;
     wrong.values[middle] = (wrong.values[middle] - 0.1).max(-1.0);
     assert!(error(wrong) > 10.0 * error(table).max(3e-3));
-    // Tells which axis is the coarser: not the one that is twice as dense.
+    // `missed_by_half` is larger for the coarser axis than for the one with four times the nodes.
     for axis in [0, 1] {
         let dense = right.refined(axis).refined(axis);
         let table = bake(&dense).unwrap().remove(0);
@@ -256,7 +255,7 @@ fn the_commands_list_bake_keep_and_show_them() {
     assert_eq!(listed["materials"], json!(["brushed"]));
     assert!(listed["cost"]["seconds"].as_f64().unwrap() > 0.0);
     let text = ok(at, &["plan", "r.toml"]);
-    // Its bytes depend on how often it is refined.
+    // The size depends on how often the table is refined.
     for part in ["albedo              gamma 2.7, sigma 0.6 and 0.15, ", "1 table, about "] {
         assert!(text.contains(part), "{text}");
     }
@@ -279,8 +278,7 @@ fn the_commands_list_bake_keep_and_show_them() {
     let table = views(&set)[0];
     ok(at, &[&bake[..4], &["--out", "image", "--format", "exr"]].concat());
     assert_eq!(store::read(&at.join("image")).unwrap(), set);
-    // The estimate holds the doublings that are expected, of which this lobe may need one more or
-    // less.
+    // The estimate holds the expected doublings, of which this lobe may need one more or less.
     let one = encode(&Default::default(), std::slice::from_ref(table)).unwrap().len();
     let none = encode(&Default::default(), &[]).unwrap().len();
     // A set's formulas are counted once.
@@ -299,7 +297,7 @@ fn the_commands_list_bake_keep_and_show_them() {
     let scene = "MakeNamedMaterial \"steel\" \"string type\" \"conductor\" \"float uroughness\" 0.04 \
                  \"float vroughness\" 0.25 \"spectrum eta\" [ 400 2 700 3 ]\nWorldBegin\n";
     std::fs::write(at.join("s.pbrt"), scene).unwrap();
-    // It takes less than two seconds, and is baked unasked.
+    // The albedo takes less than two seconds, and is baked without `--albedo`.
     for asked in [&["plan", "s.pbrt"][..], &["plan", "s.pbrt", "--albedo"]] {
         let albedo = &json(at, asked)["albedo"][0];
         assert_eq!(albedo["materials"], json!(["steel"]));
@@ -347,8 +345,7 @@ fn ellipsoids_are_bound_by_name_with_their_albedo() {
         (set.material("tilted").unwrap(), set.material_albedo("tilted").unwrap());
     for i in 0..8 {
         let v = direction(0.3 + 0.08 * f64::from(i), 0.8 * f64::from(i));
-        // Normals are drawn with density (v·m)⁺ D/(projected area); G1 is the clamped ratio of v·n
-        // to it.
+        // Normals are drawn with density (v·m)⁺ D/(projected area); G1 is v·n over it, clamped.
         let want = mean_reflected(&tilted, v, 200, |_, l| {
             tilted.reflection_weight(v, l, Masking::HeightCorrelated).into()
         });
@@ -392,7 +389,7 @@ fn an_anisotropic_conductor_has_the_albedo_of_its_own_lobe() {
         assert!((f64::from(got[0]) - want).abs() < 4e-3, "{v}: {got:?} {want}");
         assert!(got.iter().all(|&x| x <= most), "{v}: {got:?} above {most}");
     }
-    // Neither azimuths nor channels are mixed up in the average.
+    // The average is right for each channel and over all azimuths.
     let average = hemisphere(|v| gold.eval(v)[2]);
     assert!((average - f64::from(gold.average()[2])).abs() < 5e-5, "{average}");
 }

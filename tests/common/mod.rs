@@ -1,4 +1,4 @@
-//! The built command, run in a folder, with its cache there too.
+//! Runs the built command in a folder, with its cache in the folder, too.
 
 #![allow(dead_code, reason = "each test binary needs a part of it")]
 

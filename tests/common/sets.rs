@@ -1,4 +1,4 @@
-//! Sets that are baked for tests, and what a renderer would estimate of their lobes.
+//! Sets that are baked for tests, and estimates from their lobes as in a renderer.
 
 #![allow(dead_code, reason = "each test binary needs a part of it")]
 
@@ -58,8 +58,7 @@ pub(crate) fn direction(cos: f64, phi: f64) -> Vec3 {
     Vec3::new((sin * phi.cos()) as f32, (sin * phi.sin()) as f32, cos as f32)
 }
 
-/// The mean of `worth` over a grid of visible normals, in single precision: as a renderer would
-/// estimate it.
+/// The mean of `worth` over a grid of visible normals, in single precision as in a renderer.
 pub(crate) fn mean(
     lobe: &impl MicrofacetDistribution,
     v: Vec3,
@@ -72,7 +71,7 @@ pub(crate) fn mean(
     sum / (steps * steps) as f64
 }
 
-/// The same for what is reflected above the surface, given normal and light.
+/// As [`mean`], over normals that reflect above the surface; `worth` takes normal and light.
 pub(crate) fn mean_reflected(
     lobe: &impl MicrofacetDistribution,
     v: Vec3,

@@ -1,5 +1,5 @@
 //! Exports of shapes. `clients/c/run` and `clients/gpu/run` compile them and compare their
-//! functions with the crate's; here is what needs no compiler.
+//! functions with the crate's; the tests here need no compiler.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -107,7 +107,7 @@ fn the_numbers_are_those_of_the_crate() {
     }
 }
 
-/// What is one-sided has to be told what to do on the other side, in every language.
+/// One-sided functions need a rule for directions of the other side, in every language.
 #[test]
 fn texts_say_that_directions_of_the_other_side_are_negated() {
     let folder = tempfile::tempdir().unwrap();
@@ -170,14 +170,14 @@ fn bad_requests_are_refused_with_a_remedy_and_write_nothing() {
         }
         assert!(!at.join("out").exists(), "{arguments:?}");
     }
-    // One of several that cannot be written leaves the others as they were.
+    // If one file cannot be written, the others stay as they were.
     fs::create_dir_all(at.join("out/student_t_gamma_3.h")).unwrap();
     fs::write(at.join("out/student_t.h"), "old").unwrap();
     let message = refused(at, &["export", "c", "--gamma", "3", "--out", "out"]);
     assert!(message.contains("student_t_gamma_3.h") && message.contains("folder"), "{message}");
     assert_eq!(fs::read_to_string(at.join("out/student_t.h")).unwrap(), "old");
     assert_eq!(names(&at.join("out")), ["student_t.h", "student_t_gamma_3.h"]);
-    // What is there is replaced.
+    // Existing files are replaced.
     fs::remove_dir(at.join("out/student_t_gamma_3.h")).unwrap();
     ok(at, &["export", "c", "--gamma", "3", "--out", "out"]);
     assert!(fs::read_to_string(at.join("out/student_t.h")).unwrap().contains("STUDENT_T_H"));
@@ -227,10 +227,10 @@ fn every_language_has_all_functions_a_sample_and_data() {
             assert!(module.is_ascii() && sample.is_ascii(), "{out}");
             assert!(module.starts_with("// SPDX-License-Identifier: CC0-1.0"), "{out}");
             for function in SHADER_FUNCTIONS {
-                // In the list at the top, and defined.
+                // Once in the list at the top, and once defined.
                 assert!(module.matches(function).count() >= 2, "{out}: {function}");
             }
-            // What a translator made up, and an entry point.
+            // The code has no names of the translator and no entry point.
             let code: String = module.lines().filter(|line| !line.starts_with("//")).collect();
             for foreign in ["naga", "fake", "impl_entry", "_group_", "main(", "#version", "sizes"] {
                 assert!(!code.contains(foreign), "{out}: {foreign}");
@@ -268,7 +268,7 @@ fn the_data_of_shaders_is_where_its_description_says() {
     let (width, height) = (count(&description["width"]), count(&description["height"]));
     assert_eq!(numbers.len(), 2 * width * height);
 
-    // It knows its companions, and is the last of them to be written.
+    // The description lists checksums of the other files.
     let of = |name: &str| {
         let mut crc = flate2::Crc::new();
         crc.update(&fs::read(at.join(name)).unwrap());

@@ -1,5 +1,5 @@
 //! Albedos as textures. `clients/lut/run` opens them with other programs, and `clients/gpu/run`
-//! reads them by a filter of hardware; here is what needs neither.
+//! reads them by a filter of hardware; the tests here need neither.
 
 use std::fs;
 use std::io::Cursor;
@@ -55,7 +55,7 @@ fn errors_are_as_promised() {
     assert!(e < 1.3e-2 && bias < 1.4e-2 && scale < e + bias, "{split:?}");
 }
 
-/// What a volume states holds at other places, about which the certificate did not ask.
+/// The stated errors of a volume hold at other points than those of the certificate.
 #[test]
 fn a_volume_errs_by_what_it_states() {
     let [spec, average] = specs(Shapes::DownTo(1.6), 3.0, &[4, 12, 12], Channels::E);
@@ -64,7 +64,7 @@ fn a_volume_errs_by_what_it_states() {
         let stated = errors(&spec, &texture)[0].largest;
         (spec, texture, stated, count)
     });
-    // The middles of cells, and beside.
+    // At and near the middles of cells.
     let last = LogShape::BAKED.coordinate(1.6);
     for (i, cell) in [0.5, 1.45, 2.5, 2.6].into_iter().enumerate() {
         let gamma = LogShape::BAKED.quantity(last * cell / 3.0);
@@ -94,7 +94,7 @@ fn a_wrong_texel_is_seen() {
         let mut bad = good.clone();
         bad.values[texel] += 0.02;
         let found = largest(&bad);
-        // The horizon of the smoothest is below the smallest cosine that counts.
+        // The texel of the smallest σ at the horizon is below the smallest cosine that counts.
         assert_eq!(found > 0.01 + before / 2.0, texel != 0, "{texel}: {found}");
     }
 }
@@ -132,7 +132,7 @@ fn lines_of_wgsl_are_valid() {
     for shapes in [Shapes::One(2.0), Shapes::One(f64::INFINITY), Shapes::DownTo(1.6)] {
         for channels in [Channels::E, Channels::OneMinusE, Channels::ScaleBias] {
             let size = if matches!(shapes, Shapes::One(_)) { &[32, 24][..] } else { &[8, 32, 24] };
-            // Words of the language, and of the line itself, are names like others.
+            // Keywords of the language, and variables of the line, are allowed as names.
             for name in ["lut", "var", "sigma", "pow", "vec2f"] {
                 let specs = TextureSpec::of_shapes(name, shapes, 3.0, size, CORRELATED, channels);
                 specs.iter().for_each(is_valid);
@@ -186,7 +186,7 @@ fn files_hold_the_same_values() {
     assert_eq!(ktx.levels().next().unwrap().data, halves);
 }
 
-/// All that a header declares has a word behind its name, which so may be one of C's own.
+/// All names in a header have a suffix, so that a texture may be named by a keyword of C.
 #[test]
 fn headers_are_named_by_any_word() {
     for (name, channels) in [("int", Channels::E), ("sigma", Channels::ScaleBias)] {
@@ -262,7 +262,7 @@ fn layouts_are_those_of_engines() {
         [(16, 16, 10152.0), (20, 5, 14115.0), (31, 31, 45425.0), (24, 10, 22312.0)]
     {
         let found = 65535.0 * openpbr.values[32 * row + column];
-        // Shipped values are within 4e-5 of exact ones in this part.
+        // Shipped values are within 4e-5 of exact ones here.
         assert!((found - value).abs() < 3.0, "{row}, {column}: {found}");
     }
 
@@ -276,7 +276,7 @@ fn layouts_are_those_of_engines() {
     }
 }
 
-/// Texels stand where their engines read them, by formulas written once more.
+/// Texels are where engines read them, by formulas that are written independently here.
 #[test]
 fn texels_of_layouts_are_where_engines_read_them() {
     let middle = |i: usize, n: usize| (i as f64 + 0.5) / n as f64;
@@ -323,7 +323,7 @@ fn texels_of_layouts_are_where_engines_read_them() {
     }
 }
 
-/// Every layout is read back as it was made, but for the rounding of its form.
+/// Every layout is read back as it was made, except for the rounding of its format.
 #[test]
 fn layouts_are_read_back() {
     for layout in &LAYOUTS {
@@ -335,7 +335,7 @@ fn layouts_are_read_back() {
         let textures: Vec<Texture> = layout.specs(2.0, size, false).iter().map(made).collect();
         let files = layout.files(&textures).unwrap();
         let back = shipped::decode(layout, &files[0].contents);
-        // Six decimals, sixteen bits, eight bits, and these through a power.
+        // Six decimals, sixteen bits, eight bits, and eight bits of a power.
         let allowed = match layout.name {
             "cycles" => 6e-7,
             "openpbr" => 8e-6,

@@ -1,4 +1,4 @@
-//! What is exported holds what the set does.
+//! Exported files hold the values of the set.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -17,7 +17,6 @@ fn image(path: &Path) -> ([usize; 2], Vec<(String, Vec<f32>)>) {
     ([layer.size.x(), layer.size.y()], channels.collect())
 }
 
-/// A description in JSON.
 fn json(path: &Path) -> serde_json::Value {
     serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
 }

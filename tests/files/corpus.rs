@@ -1,12 +1,12 @@
-//! The seeds of the fuzz targets and what fuzzing has found since, on a stable compiler: each is
-//! read or refused.
+//! The seeds of the fuzz targets and the inputs that fuzzing has found, on a stable compiler: each
+//! is read or refused.
 
 use std::fs;
 use std::path::Path;
 
 include!("../../fuzz/fuzz_targets/common.rs");
 
-/// The files of a target's folder of seeds, and of its corpus if fuzzing has left one beside it.
+/// The files of a target's folder of seeds, and of its corpus, if fuzzing has left one.
 fn seeds(target: &str) -> Vec<Vec<u8>> {
     let fuzz = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz");
     let list = |kind: &str| fs::read_dir(fuzz.join(kind).join(target)).into_iter().flatten();
@@ -18,8 +18,8 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
     files
 }
 
-/// A seed that is refused at its first byte teaches a fuzzer nothing: bake seeds anew when the
-/// format changes, as `docs/reliability.md` says.
+/// A seed that is refused at its first byte reaches no code: bake seeds anew when the format
+/// changes, as `docs/reliability.md` says.
 #[test]
 fn seeds_of_table_files_are_of_this_version() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds");
@@ -34,13 +34,13 @@ fn seeds_of_table_files_are_of_this_version() {
     }
 }
 
-/// What a bake left in the cache; an entry of another version would be refused by its key.
+/// A bake left this entry in the cache; the key of another version would refuse it.
 #[test]
 fn the_seed_of_an_entry_is_believed() {
     assert!(entry(include_bytes!("../../fuzz/seeds/entry/gamma_3.safetensors")));
 }
 
-/// The decoder of B44 in `exr` 1.74.2 overflows on these blocks, and is never asked.
+/// The decoder of B44 in `exr` 1.74.2 overflows on these blocks, and must not be called.
 #[test]
 fn an_image_by_another_compression_is_refused_undecoded() {
     let image = include_bytes!("../../fuzz/seeds/image/refused_b44.exr");

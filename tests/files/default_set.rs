@@ -17,7 +17,7 @@ fn the_default_set_is_reproducible() {
     );
     assert!(COMMITTED.len() < 2 << 20);
 
-    // What the README promises of the default quality.
+    // The errors that the README states for the default quality.
     let largest = |kind: Kind, figure: &dyn Fn(&Certificate) -> Option<f64>| {
         let of_kind = set.tables().iter().filter(|table| table.kind == kind);
         of_kind.map(|table| figure(&table.certificate).unwrap()).fold(0.0, f64::max)

@@ -1,5 +1,4 @@
-//! Damaged images: every truncation and every flipped bit of a small table gives an error or the
-//! identical table.
+//! Damaged images: any truncation or flipped bit of a small table gives an error or the same table.
 
 use std::io::Cursor;
 
@@ -55,11 +54,11 @@ fn every_flipped_bit_of_an_image_is_refused_or_harmless() {
         }
         file[bit / 8] ^= 1 << (bit % 8);
     }
-    // Attributes that say how to show an image do not belong to the table.
+    // Attributes that say how to display an image are not part of the table.
     assert!(harmless < 8 * file.len() / 4, "{harmless} of {}", 8 * file.len());
 }
 
-/// A list that repeats a channel could ask for any memory.
+/// A list that repeats a channel could take any amount of memory.
 #[test]
 fn a_channel_named_twice_is_refused() {
     let (_, mut file) = small_image();
@@ -70,7 +69,7 @@ fn a_channel_named_twice_is_refused() {
     assert!(message.contains("not those of the description"), "{message}");
 }
 
-/// A table that follows a measured file has its name, in any script.
+/// A table of a measured file has the file's name, in any script.
 #[test]
 fn an_image_of_any_name_is_read_back() {
     let set = small_table(Precision::F32);
@@ -80,7 +79,7 @@ fn an_image_of_any_name_is_read_back() {
     assert_eq!(decode_exr(&bytes).unwrap().tables(), [table]);
 }
 
-/// What is read of an image that another program has read, changed and written.
+/// The result for an image that another program has read, changed and written.
 fn written_anew(
     file: &[u8],
     change: &dyn Fn(&mut FlatImage),
@@ -99,7 +98,7 @@ fn written_anew(
     decode_exr(&file.into_inner())
 }
 
-/// Nothing that the writer does not write reaches a decoder, not even with the same pixels.
+/// An image that the writer would not write is refused undecoded, even with the same pixels.
 #[test]
 fn an_image_written_anew_by_another_program_is_refused() {
     let (set, file) = small_image();
@@ -134,7 +133,7 @@ fn an_image_written_anew_by_another_program_is_refused() {
     });
 }
 
-/// Parts stand for tables by their order, and say so by their names.
+/// The parts of an image are the tables in their order, with their names.
 #[test]
 fn parts_that_are_exchanged_renamed_or_missing_are_refused() {
     let set = small_table(Precision::F32);

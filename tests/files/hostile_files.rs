@@ -1,5 +1,5 @@
 //! Devices, pipes, endless and huge files, links, protected files and full disks, as input and as
-//! output: every command ends soon, in little memory, and leaves what is not its own alone.
+//! output: every command ends soon, in little memory, and leaves other files alone.
 #![cfg(unix)]
 
 use std::fs;
@@ -46,7 +46,7 @@ fn script(folder: &Path, text: &str) -> Output {
     Output { stdout: stdout.join().unwrap().unwrap(), ..output }
 }
 
-/// The message of a script that must be refused.
+/// Runs a script that must be refused with a message that has `part`.
 fn refuses(folder: &Path, text: &str, part: &str) {
     let output = script(folder, text);
     let message = String::from_utf8_lossy(&output.stderr);
@@ -97,7 +97,7 @@ fn what_is_no_file_is_not_read() {
         // A CSV may be long, but not one row of it.
         let part = if path == "sparse" { "no end within 1 MiB" } else { part };
         refuses(at, &format!("\"$0\" query g1 --input {path}"), part);
-        // As a file in a folder.
+        // The same as a file in a folder.
         for name in ["tables.safetensors", "tables.exr", "tables.index.json"] {
             let inside = at.join(format!("folder of {} {name}", path.replace('/', "_")));
             fs::create_dir(&inside).unwrap();
@@ -105,7 +105,7 @@ fn what_is_no_file_is_not_read() {
             refuses(at, &format!("\"$0\" inspect '{}'", inside.display()), name);
         }
     }
-    // The way out is named.
+    // The message names the remedy.
     refuses(at, "\"$0\" fit --input fifo", "`-` for standard input");
 }
 
@@ -154,7 +154,7 @@ fn a_cache_entry_that_cannot_be_read_is_baked_again() {
         let text = String::from_utf8(runs(at, bake)).unwrap();
         assert!(!text.contains("from the cache"), "{text}");
     }
-    // What killed bakes leave there goes with the next entry, once it is old.
+    // Old files that killed bakes left are removed when the next entry is written.
     let partial = at.join("cache/.microfacet-bake-x.partial");
     let file = fs::File::create(&partial).unwrap();
     file.set_modified(std::time::SystemTime::now() - Duration::from_secs(100_000)).unwrap();
@@ -173,7 +173,7 @@ fn outputs_go_where_links_lead_and_keep_their_mode() {
     for (i, command) in [SAMPLE, "\"$0\" plot student-t --out"].into_iter().enumerate() {
         let (link, file) = (format!("link{i}.svg"), at.join(format!("there.svg/file{i}")));
         symlink(&file, at.join(&link)).unwrap();
-        // Dangling, then to a private file.
+        // The link first has no target, then a private file.
         for _ in 0..2 {
             runs(at, &format!("{command} {link}"));
             assert!(fs::symlink_metadata(at.join(&link)).unwrap().is_symlink());
@@ -219,7 +219,7 @@ fn modes_of_a_set_are_kept() {
                 assert_eq!(names(&at.join("out")), [&name[..]]);
             }
         }
-        // That is known before anything is read or baked.
+        // The check comes before anything is read or baked.
         let message = refused(at, &["bake", "missing.toml", "--out", "out"]);
         assert!(message.contains("is write-protected"), "{message}");
         assert!(ok(at, &["inspect", "out"]).contains("glass"));
@@ -244,7 +244,7 @@ fn normals_go_to_standard_output() {
     assert!(!at.join("-").exists());
 }
 
-/// What was in a folder before, besides the set.
+/// Other files in the folder of a set are left alone.
 #[test]
 fn only_the_set_of_a_folder_is_replaced() {
     let folder = workshop();
@@ -290,7 +290,7 @@ fn an_image_is_the_set_and_an_image_of_a_table_is_that_table() {
             (whole.provenance(), std::slice::from_ref(table))
         );
     }
-    // What it says to run next is one of them, since the folder is no set.
+    // The command that is printed to run next names one image, since the folder is no set.
     let next = said.lines().last().unwrap().trim().strip_prefix("microfacet-bake ").unwrap();
     ok(at, &next.split(' ').collect::<Vec<_>>());
     let message = refused(at, &["inspect", "images"]);

@@ -1,5 +1,5 @@
-//! The judges of complete BSDFs pass what is right and reject what is wrong. In 40 configurations
-//! of 2e5 samples; `microfacet-bake bsdf` runs 200 of 1e6.
+//! The tests of complete BSDFs pass correct ones and reject wrong ones: 40 configurations of 2e5
+//! samples here; `microfacet-bake bsdf` runs 200 of 1e6.
 
 use std::sync::OnceLock;
 
@@ -40,10 +40,10 @@ fn samples_have_their_density() {
     let result = run(set, all, options, &Stage::unwatched()).unwrap();
     let worst = &result.reports[0];
     assert!(result.passed(), "p = {:e}: {}", worst.test.p, worst.configuration);
-    // The tests resolve: hundreds of cells each, but for what loses most of its light.
+    // The tests have hundreds of cells each, except for surfaces that lose most of their light.
     let cells = result.reports.iter().filter(|report| report.test.degrees > 100).count();
     assert!(cells > 30, "{cells}");
-    // Every kind is there.
+    // Every kind of surface occurs.
     let has = |kind: fn(&Surface) -> bool| all.iter().any(|one| kind(&one.specimen.surface));
     assert!(has(|surface| *surface == Surface::Mirror));
     assert!(has(|surface| matches!(surface, Surface::Dielectric(eta) if *eta < 1.0)));
@@ -73,12 +73,12 @@ fn p(bsdf: &impl Bsdf<3>, v: Vec3, density: impl Fn(Vec3) -> f32) -> f64 {
     test(v, 200_000, 5, Vec::new(), &[], draw, density).p
 }
 
-/// What rough glass of γ < 2 draws, but for what is only sampled, is what `pdf` alone leads to
-/// expect. A renderer that weights by densities tests the same.
+/// Lights that rough glass of γ < 2 draws, except those that are only sampled, have the density
+/// that `pdf` alone states. A renderer that weights by densities relies on this.
 #[test]
 fn rough_glass_of_long_tails_has_its_density() {
     let tables = Tables::embedded();
-    // p of a view, and what it is if deltas are counted with all others.
+    // p of a view; with `deltas`, lights that are only sampled are counted, too.
     let p = |gamma: f64, (eta, sigma): (f64, [f32; 2]), theta: f64, deltas: bool| {
         let one = Specimen { gamma, sigma, ..specimen(Surface::Dielectric(eta)) };
         let glass = one.bsdf(&tables).unwrap();
@@ -100,11 +100,11 @@ fn rough_glass_of_long_tails_has_its_density() {
     }
     let worst = all.iter().copied().fold(1.0, f64::min);
     assert!(worst > LEVEL / all.len() as f64, "{all:?}");
-    // The cells resolve what is only sampled.
+    // The cells resolve the lights that are only sampled.
     assert!(p(1.55, surfaces[0], 1.0, true) < 1e-10);
 }
 
-/// Each of these is a mistake that a density may have.
+/// Each case is a mistake that a density may have.
 #[test]
 fn wrong_densities_are_rejected() {
     let v = Vec3::new(0.6, 0.0, 0.8);
@@ -112,7 +112,7 @@ fn wrong_densities_are_rejected() {
     let pdf = |v, l| Bsdf::<3>::pdf(&glass, v, l);
     for v in [v, -v] {
         assert!(p(&glass, v, |l| pdf(v, l)) > LEVEL / 100.0);
-        // The Jacobian of refraction is forgotten: m is counted as if it were l.
+        // The Jacobian of refraction is missing: m is counted as if it were l.
         let eta = if v.z > 0.0 { 1.5 } else { 1.0 / 1.5 };
         let without = |l: Vec3| {
             if v.z * l.z > 0.0 {
@@ -124,18 +124,18 @@ fn wrong_densities_are_rejected() {
             pdf(v, l) / jacobian
         };
         assert!(p(&glass, v, without) < 1e-10);
-        // So is the choice of the event: reflection has the density of a conductor.
+        // The probability of the event is missing: reflection has the density of a conductor.
         let mirror: Conductor<Lobe> = Conductor::new(lobe.clone(), ConductorFresnel::mirror());
         let chosen = |l: Vec3| match v.z * l.z > 0.0 {
             true => Bsdf::<3>::pdf(&mirror, v.z.signum() * v, v.z.signum() * l),
             false => pdf(v, l),
         };
         assert!(p(&glass, v, chosen) < 1e-10);
-        // Or the relative index is taken for its inverse.
+        // The relative index is taken for its inverse.
         let inverse = Dielectric::new(lobe.clone(), 1.0 / 1.5).unwrap();
         assert!(p(&glass, v, |l| Bsdf::<3>::pdf(&inverse, v, l)) < 1e-10);
     }
-    // The broad lobe of a compensation is forgotten, or the probability of it.
+    // The broad lobe of a compensation is missing, or has a wrong probability.
     let rough: Lobe = Tables::embedded().student_t(1.0, 3.0).unwrap().into();
     let bare: Conductor<Lobe> = Conductor::new(rough, ConductorFresnel::mirror());
     let tables = Tables::embedded();
@@ -168,7 +168,7 @@ fn view_and_light_may_be_exchanged() {
     let result = reciprocity::run(set, all, 2000).unwrap();
     assert!(result.passed(), "{:?}", result.worst);
     assert!(result.pairs.iter().all(|&count| count > 2000), "{:?}", result.pairs);
-    // Turquin's factor is of the view alone, and importance is not radiance.
+    // Turquin's factor depends on the view alone, so f is not reciprocal.
     let mirror = Specimen { sigma: [1.0; 2], ..specimen(Surface::Mirror) };
     let turquin = Specimen { compensation: Compensation::Turquin, ..mirror };
     let compared = |specimen| reciprocity::compare(set, &specimen, 1, 2000).unwrap();
@@ -190,7 +190,7 @@ fn white_surfaces_return_all_light_and_wrong_tables_do_not() {
     for name in furnace::NAMES {
         let sampled = rows.iter().filter(|row| row.name() == name && row.sampled.is_some());
         assert!(sampled.count() >= 5, "{name}");
-        // It is no furnace without a loss.
+        // The furnace needs rows that lose light in one bounce.
         assert!(rows.iter().any(|row| row.name() == name && row.single < 0.7), "{name}");
     }
     // All shares of light three per cent too small.
@@ -210,7 +210,7 @@ fn lines(why: &BindError) -> String {
     format!("{}\n", why.recipe().unwrap_or_else(|| panic!("no lines: {why}")))
 }
 
-/// What an error says to append to a recipe makes the tables that were missing.
+/// The lines that an error says to append to a recipe make the tables that were missing.
 #[test]
 fn the_lines_of_an_error_make_what_is_missing() {
     let start = "[[material]]\nname = \"first\"\nsigma = 0.2\ngamma = 3.0\n";
@@ -234,7 +234,7 @@ fn the_lines_of_an_error_make_what_is_missing() {
     }
 }
 
-/// A rough plastic does not bind to the default set, and to one of these lines it does.
+/// A rough plastic does not bind to the default set, but to a set of the error's lines.
 #[test]
 fn the_lines_of_a_message_make_a_plastic() {
     let bind = |set: &Tables| {
@@ -260,7 +260,7 @@ fn named_materials_have_their_own_albedos() {
         let of = |form| set.bsdf(name, form, StandIn::Refused).expect(name);
         let (bare, whole) = (of(Compensation::None), of(Compensation::KullaConty));
         let albedo = set.material_albedo(name).unwrap();
-        // Behind the view, where both are small.
+        // A light on the side of the view, where both f are small.
         let l = Vec3::new(0.6, 0.64, 0.48).normalize();
         let f = |bsdf: &AnyBsdf| bsdf.eval(v, l, Transport::Radiance)[0];
         let (more, want) = (f(&whole) - f(&bare), albedo.compensation(v, l));

@@ -1,5 +1,5 @@
-//! An average albedo is the integral of the albedos that lookups return, or a furnace would not
-//! close.
+//! An average albedo is the integral of the albedos that lookups return; otherwise the white
+//! furnace would gain or lose light.
 
 use glam::Vec3;
 use microfacet_baker::bake::albedo::{AlbedoLobe, bake};

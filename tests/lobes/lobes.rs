@@ -1,5 +1,5 @@
-//! The one trait: every lobe answers alike, as itself, as a [`Lobe`] and as a trait object, and
-//! what has a counterpart in the model agrees with it.
+//! Every lobe gives the same results as itself, as a [`Lobe`] and as a trait object, and agrees
+//! with its counterpart in the model.
 
 use std::sync::LazyLock;
 
@@ -138,7 +138,7 @@ fn apart(
 #[test]
 fn both_precisions_mean_the_same() {
     let tables = Tables::embedded();
-    // G1 and what is made of it by the error of the tables; D by that of single precision.
+    // G1, and values computed from it, within the error of the tables; D within single precision.
     let close =
         |[g1, d, pdf, weight]: [f64; 4]| g1 < 3e-5 && d < 1e-5 && pdf < 6e-5 && weight < 3e-5;
     for gamma in [1.6, 2.0, 3.0, f64::INFINITY] {
@@ -161,7 +161,7 @@ fn both_precisions_mean_the_same() {
     let truth = model::classic::Radial::new(&gtr);
     let [g1, .., weight] = apart(&SET.material("paint").unwrap(), &truth);
     assert!(g1 < 1e-5 && weight < 1e-5, "{g1} {weight}");
-    // It can fail: another roughness is another lobe.
+    // The test can fail: another roughness is another lobe.
     let other = model::StudentT::new(0.301, 2.0).unwrap();
     assert!(!close(apart(&ggx, &other)));
 }
@@ -170,7 +170,7 @@ fn both_precisions_mean_the_same() {
 fn narrow_lobes_say_that_they_are_mirrors() {
     let tables = Tables::embedded();
     assert!(tables.student_t(9.9e-4, 3.0).unwrap().is_effectively_smooth());
-    // The mean slope of GGX is alpha; near 3/2 a tenth of what is seen is far from the normal.
+    // The mean slope of GGX is alpha; near γ = 3/2 a tenth of visible normals is far off n.
     assert!(tables.student_t(9.9e-4, 2.0).unwrap().is_effectively_smooth());
     assert!(!tables.student_t(1.01e-3, 2.0).unwrap().is_effectively_smooth());
     assert!(!tables.student_t(9.9e-4, 1.501).unwrap().is_effectively_smooth());
@@ -178,14 +178,14 @@ fn narrow_lobes_say_that_they_are_mirrors() {
     assert!(Ggx::new(9.9e-4).unwrap().is_effectively_smooth());
     let tilted = |turn| tables.ellipsoid(Skew::new(5e-4, [turn, 0.0, 0.0]).unwrap(), 3.0).unwrap();
     assert!(tilted(0.0).is_effectively_smooth());
-    // A mirror, but another one than the surface.
+    // A mirror, but tilted against the surface.
     assert!(!tilted(0.1).is_effectively_smooth());
 }
 
 #[test]
 fn an_ellipsoid_knows_the_density_of_its_samples() {
     let tables = Tables::embedded();
-    // Coarse tables show what the analytic density does not have: that of the set above is draft.
+    // The analytic density has no error of tables, which the coarse tables of the draft set show.
     let draft = SET.material("brushed").unwrap();
     for gamma in [1.6, 3.0] {
         let straight = tables.ellipsoid(Skew::new([0.3, 0.5], [0.0; 3]).unwrap(), gamma).unwrap();
@@ -198,7 +198,7 @@ fn an_ellipsoid_knows_the_density_of_its_samples() {
             }
         }
     }
-    // The mean of analytic over drawn density, over what is drawn, is the integral of the former.
+    // The mean over samples of analytic over drawn density is the former's integral.
     const STEPS: u16 = 200;
     for v in directions().filter(|v| v.z > 0.1) {
         let at = |i: u16| (f32::from(i) + 0.5) / f32::from(STEPS);
@@ -216,7 +216,7 @@ fn an_ellipsoid_knows_the_density_of_its_samples() {
 }
 
 /// Weights of views down to the smallest numbers above the horizon: G2 and G1 vanish together, and
-/// their quotient would be anything.
+/// their computed quotient would be arbitrary.
 #[test]
 fn weights_of_grazing_views_are_those_of_the_model() {
     let skew = Skew::new([0.4, 0.2], [0.05, -0.1, 0.5]).unwrap();

@@ -1,4 +1,4 @@
-//! `fit --merl`: files in the format of the MERL database, made of our own lobes.
+//! `fit --merl`: files in the format of the MERL database, made of lobes of this program.
 
 use std::fs;
 use std::path::Path;
@@ -16,7 +16,6 @@ fn fit(material: &Material) -> Comparison {
     Fitter::default().fit(&measured, &Meter::default()).unwrap()
 }
 
-/// A material of one lobe.
 fn single(lobe: &'static str, f0: [f64; 3], lambert: [f64; 3], noise: f64) -> Material {
     Material { lobes: vec![(1.0, lobe)], f0, lambert, noise }
 }
@@ -26,7 +25,7 @@ fn assert_near(fitted: &Fitted, sigma_gamma: [f64; 2], of: &Material, tolerance:
     let [sigma, gamma] = fitted.sigma_gamma();
     let off = |found: f64, made: f64| (found / made - 1.0).abs();
     assert!(off(sigma, sigma_gamma[0]) < tolerance, "{fitted:?}");
-    // As s = 1/(γ−1), which is 0 for Beckmann.
+    // Compared as s = 1/(γ−1), which is 0 for Beckmann.
     let s = [gamma, sigma_gamma[1]].map(|gamma| 1.0 / (gamma - 1.0));
     assert!((s[0] - s[1]).abs() < tolerance, "{fitted:?}");
     for (found, made) in [(fitted.f0, of.f0), (fitted.lambert, of.lambert)] {
@@ -42,7 +41,7 @@ fn what_was_made_is_found_again_and_no_other_fit_is_better() {
     let cases = [
         (single("student-t:0.15,1.7", gold, [0.02; 3], 0.0), [0.15, 1.7], 1e-4),
         (single("student-t:0.2,3", plastic, [0.4, 0.08, 0.05], 0.1), [0.2, 3.0], 2e-2),
-        // The ends of both, F0 = 0 and 1, and no Lambert term.
+        // GGX and Beckmann, F0 = 0 and 1, and no Lambert term.
         (single("ggx:0.02", [1.0, 0.5, 0.0], [0.0; 3], 0.1), [0.02, 2.0], 5e-3),
         (single("beckmann:0.5", [1.0, 0.5, 0.0], [0.3; 3], 0.1), [0.5, f64::INFINITY], 5e-3),
     ];
@@ -51,7 +50,7 @@ fn what_was_made_is_found_again_and_no_other_fit_is_better() {
         assert_near(&fits.student_t, sigma_gamma, &material, tolerance);
         assert!(fits.student_t.error <= fits.ggx.error);
         assert!(fits.student_t.error <= fits.beckmann.error);
-        // Half of the largest error, on average, is left; less by what noise takes from the sums.
+        // On average half of the largest noise is left, less what it takes from the sums.
         let left = fits.student_t.error / (0.5 * material.noise).max(1e-4);
         assert!(left < 1.01, "{left}");
         match sigma_gamma[1] {
@@ -97,12 +96,12 @@ fn the_command_compares_and_writes_a_recipe() {
     assert!(lines[2].contains("F0 0.95") && lines[2].contains("Lambert 0.0"), "{text}");
     assert!(text.contains("best for 2 materials: Student-t 1, GGX 1, Beckmann 0"), "{text}");
     assert!(text.ends_with("fitted.toml\n"), "{text}");
-    // The recipe is one: `plan` takes it, with names of their own and the masking of the fit.
+    // `plan` reads the recipe, with a name for each material and the masking of the fit.
     let found = microfacet_scene::load(&at.join("fitted.toml")).unwrap();
     let names: Vec<&str> = found.materials.iter().map(|m| m.name.as_str()).collect();
     assert_eq!(names, ["gold", "gold (2)"]);
     assert!(ok(at, &["plan", "fitted.toml"]).contains("uncorrelated"));
-    // It is not replaced, and nothing is fitted before that is said.
+    // The recipe is not replaced, and the error comes before anything is fitted.
     let message = refused(at, &["fit", "--merl", "none.binary", "--recipe", "fitted.toml"]);
     assert!(message.contains("fitted.toml: this exists already"), "{message}");
 }
@@ -122,7 +121,7 @@ fn files_and_options_that_do_not_belong_are_refused() {
         (&["--merl", "none.binary"], "none.binary: "),
         (&["--merl", "."], ".: is a folder"),
         (&["--merl", "d.csv"], "d.csv: is no full-size MERL file"),
-        // A good file before it is not fitted first.
+        // A good file before the bad one is not fitted first.
         (&["--merl", "good.binary", "short.binary"], "short.binary: has 34992004 bytes"),
         (&["--merl", "nan.binary"], "blue at theta_h 89, theta_d 89, phi_d 179"),
         (&["--merl", "missing.binary"], "missing.binary: red has no value"),

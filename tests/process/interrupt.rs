@@ -1,4 +1,4 @@
-//! The program interrupted, as by Ctrl-C: it ends with whole files and says what is left.
+//! The program interrupted, as by Ctrl-C: it leaves only whole files, and reports what is left.
 #![cfg(unix)]
 
 use std::fs;
@@ -22,12 +22,12 @@ fn interrupt_after(mut child: Child, signal: &str, happened: impl Fn() -> bool) 
     }
     let sent = Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
     assert!(sent.success());
-    // Held open: the end of its input could end the program before the signal does.
+    // Standard input stays open, since its end could end the program before the signal does.
     let _input = child.stdin.take();
     child.wait_with_output().unwrap()
 }
 
-/// What it said, if it ended by the signal itself, so that a shell sees why.
+/// Standard error, if the signal itself ended the program, so that a shell sees why.
 fn message(output: &Output, signal: i32) -> String {
     let text = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.signal(), Some(signal), "{text}");
@@ -102,7 +102,7 @@ fn one_that_waits_for_input_ends_at_once() {
     let desk = Desk::new(&[]);
     let child = start(&desk, "query g1 --input -");
     let id = child.id();
-    // It writes nothing before it has read a line.
+    // The program writes nothing before it has read a line.
     let text = message(&interrupt_after(child, "-INT", || handles(id, 2)), 2);
     assert!(text.starts_with("interrupted: "), "{text}");
 }
@@ -114,14 +114,14 @@ fn what_is_ignored_stays_ignored() {
     let mut shell = Command::new("sh");
     shell.args(["-c", &script]).stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null());
     let mut child = shell.spawn().unwrap();
-    // As under `nohup`.
+    // `nohup` ignores the signal in the same way.
     while !handles(child.id(), 2) {
         std::thread::sleep(Duration::from_millis(5));
     }
     assert!(!handles(child.id(), 1));
     let sent = Command::new("kill").args(["-HUP", &child.id().to_string()]).status().unwrap();
     assert!(sent.success());
-    // It goes on, to the end of its input.
+    // The program continues to the end of its input.
     drop(child.stdin.take());
     assert_eq!(child.wait().unwrap().code(), Some(2));
 }

@@ -1,4 +1,5 @@
-//! A library baked in shares, by processes that race, repeat, die or differ: always the same bytes.
+//! A library baked in shards, by processes that run at once, repeat work, are killed or have other
+//! options: always the same bytes.
 
 use std::fs;
 use std::path::Path;
@@ -35,7 +36,7 @@ fn shard(folder: &Path, share: &str) -> serde_json::Value {
     json(folder, &[&args, &DRAFT[..]].concat())
 }
 
-/// What standard error says of a bake from the cache into `out`, and how many tables were baked.
+/// Standard error of a bake from the cache into `out`, and how many tables were baked.
 fn assemble(folder: &Path, out: &str, more: &[&str]) -> (String, u64) {
     let args = ["bake", "lib.toml", "--cache", "cache", "--out", out, "--json"];
     let output = run(folder, &[&args, &DRAFT[..], more].concat());
@@ -96,7 +97,7 @@ fn a_set_of_what_is_kept_alone_is_refused_if_anything_is_missing() {
         folder,
         &["bake", "lib.toml", "--shard", "1/2", "--cache", "cache", "--quality", "draft"],
     );
-    // What it says to run next has the options that the tables depend on.
+    // The command that is printed to run next has the options that the tables depend on.
     assert!(printed.contains("bake lib.toml --quality draft --cache cache --out DIR"), "{printed}");
     assert!(refused(folder, &only).contains("of 5 needs missing"));
     assert!(!folder.join("out").exists());
@@ -104,7 +105,7 @@ fn a_set_of_what_is_kept_alone_is_refused_if_anything_is_missing() {
     ok(folder, &only);
     alone(folder, &[]);
     same(folder, "alone", "out");
-    // A damaged entry is missing.
+    // A damaged entry counts as missing.
     let entry = names(&folder.join("cache")).into_iter().find(|name| name.ends_with("tensors"));
     fs::write(folder.join("cache").join(entry.unwrap()), "damaged").unwrap();
     assert!(refused(folder, &only).contains("1 of 5 needs missing"));
@@ -154,7 +155,7 @@ fn shares_of_another_scene_or_version_are_said_and_not_mixed_in() {
     let high = ["bake", "lib.toml", "--shard", "1/2", "--cache", "cache", "--precision", "u16"];
     let said = run(folder, &[&high[..], &DRAFT[..]].concat()).stderr;
     assert!(String::from_utf8_lossy(&said).contains("or of other options"));
-    // What another version wrote: its receipts and its entries.
+    // Receipts and entries of another version.
     let receipts = folder.join("cache").join("shards");
     for name in names(&receipts) {
         let path = receipts.join(name);
@@ -164,7 +165,7 @@ fn shares_of_another_scene_or_version_are_said_and_not_mixed_in() {
     }
     let entries = |name: &&String| name.ends_with(".safetensors");
     for name in names(&folder.join("cache")).iter().filter(entries) {
-        // Its name is of its key, which holds the versions: other versions have other names.
+        // Names depend on keys, which hold the versions: other versions have other names.
         let other = name.chars().rev().collect::<String>().replace("srosnetefas.", "");
         let cache = folder.join("cache");
         fs::rename(cache.join(name), cache.join(other + ".safetensors")).unwrap();
@@ -194,7 +195,7 @@ fn more_materials_than_a_set_holds_become_numbered_sets() {
     expected.push(Index::FILE.into());
     assert_eq!(names(&folder.join("out")), expected);
 
-    // Both are opened alike, as a whole or for some materials.
+    // The folder and its index are opened alike, as a whole or for some materials.
     let whole = read(&folder.join("out")).unwrap();
     assert_eq!(whole.provenance().materials.len(), 5);
     assert_eq!(read(&folder.join("out").join(Index::FILE)).unwrap(), whole);
@@ -225,7 +226,7 @@ fn more_materials_than_a_set_holds_become_numbered_sets() {
         first.map(|first| format!("  microfacet-bake report {first}")).as_deref()
     );
 
-    // One set in the place of three, and three in the place of one.
+    // One set replaces three, and three replace one.
     ok(folder, &["bake", "lib.toml", "--cache", "cache", "--out", "out", "--quality", "draft"]);
     assert_eq!(names(&folder.join("out")), ["tables.safetensors"]);
     assert_eq!(
@@ -319,7 +320,7 @@ fn a_plan_of_several_sets_lists_them() {
     for what in ["set 1  3 materials", "set 2", "2 numbered sets"] {
         assert!(text.contains(what), "{text}");
     }
-    // What takes seconds needs no shards.
+    // A bake that takes seconds needs no shards.
     assert!(!text.contains("--shard"), "{text}");
     let many: String = (0..3000)
         .map(|i| format!("[[material]]\nname = \"{i}\"\nsigma = [0.1{i:04}, 0.5]\ngamma = 3\nfresnel = \"mirror\"\n"))

@@ -1,5 +1,5 @@
-//! The program as a process: killed, out of disk, denied access, run in parallel, asked for too
-//! much.
+//! The program as a process: killed, out of disk, denied access, run in parallel, out of memory or
+//! threads.
 #![cfg(unix)]
 
 use std::collections::BTreeMap;
@@ -35,7 +35,7 @@ fn message(output: &Output) -> String {
 
 type Files = BTreeMap<String, Vec<u8>>;
 
-/// What lies in a folder: the files of a set, and the program's own hidden ones.
+/// The content of a folder: the files of a set, and the program's own hidden ones.
 fn content(folder: &Path) -> (Files, Vec<String>) {
     let (mut files, mut hidden) = (Files::new(), Vec::new());
     for entry in fs::read_dir(folder).unwrap() {
@@ -54,7 +54,7 @@ fn content(folder: &Path) -> (Files, Vec<String>) {
     (files, hidden)
 }
 
-/// The forms of a set: what is asked for, and how many files it has.
+/// The kinds of a set's files: the options that ask for them, and their number.
 const FORMS: [(&[&str], usize); 3] =
     [(&[], 1), (&["--format", "exr"], 1), (&["--per-set", "1"], 3)];
 
@@ -78,8 +78,7 @@ fn read(folder: &Path) -> Vec<String> {
 const OLD: [&str; 2] = ["old 1", "old 2"];
 const NEW: [&str; 2] = ["new 1", "new 2"];
 
-/// 200 with `MICROFACET_KILLS=200`; a few otherwise. Each bake has another form than the one
-/// before.
+/// 8 kills, or `MICROFACET_KILLS`. Each bake writes other kinds of files than the one before.
 #[test]
 fn killed_at_any_moment_one_whole_set_is_there() {
     let kills: u32 = std::env::var("MICROFACET_KILLS").map_or(8, |n| n.parse().unwrap());
@@ -102,7 +101,7 @@ fn killed_at_any_moment_one_whole_set_is_there() {
         outcomes[usize::from(names == NEW)] += 1;
     }
     println!("{kills} kills: {outcomes:?} found the old set, the new one");
-    // A bake that is not disturbed leaves nothing of the others.
+    // A bake that is not killed leaves nothing of the others.
     for (form, expected) in whole {
         let output = bake(&workshop, "new", &out).args(form.0).output().unwrap();
         assert!(output.status.success(), "{}", message(&output));
@@ -116,7 +115,7 @@ fn killed_at_any_moment_one_whole_set_is_there() {
     }
 }
 
-/// Two bakes that write over each other, in turn in each form, and a reader beside them.
+/// Two bakes overwrite each other's set, in turn with each kind of files, while the test reads it.
 #[test]
 fn beside_two_writers_every_read_finds_a_whole_set() {
     let workshop = workshop();
@@ -228,8 +227,8 @@ fn folders_and_links_in_place_of_files() {
     assert_eq!(content(&out), (old, Vec::new()));
 }
 
-/// Headers that promise more than the file holds must not cost memory: half a gigabyte of address
-/// space is enough to refuse them.
+/// Headers that declare more than the file holds must not cost memory: they are refused within half
+/// a gigabyte of address space.
 #[test]
 fn inspecting_a_lie_takes_little_memory() {
     let workshop = workshop();
@@ -241,7 +240,7 @@ fn inspecting_a_lie_takes_little_memory() {
     let corner = at + 11 + 6 + 4 + 8;
     let mut lie = image.clone();
     lie[corner..corner + 8].copy_from_slice(&[0xff, 0xff, 0x0f, 0, 0xff, 0xff, 0x0f, 0]);
-    // As long as its header says, by padding, but more than any image of a table.
+    // Padded to the length that its header declares, but more than any image of a table.
     let mut large = image;
     large[corner..corner + 8].copy_from_slice(&[0xff, 0x1f, 0, 0, 0xff, 0x1f, 0, 0]);
     large.resize(9 << 20, 0);
@@ -261,8 +260,8 @@ fn inspecting_a_lie_takes_little_memory() {
     }
 }
 
-/// A stack that memory does not hold stands for a system that starts no more threads: none at all,
-/// or none but the one that waits for signals.
+/// A stack larger than memory stands for a system that starts no more threads: none at all, or only
+/// the one that waits for signals.
 #[test]
 fn where_no_threads_can_be_started_one_does_the_work() {
     let workshop = workshop();
@@ -280,7 +279,7 @@ fn where_no_threads_can_be_started_one_does_the_work() {
         assert!(output.status.success(), "{text}");
         has(&text, &["warning: threads cannot be started", "--threads"]);
         assert!(content(&workshop.join(&stack.to_string())).0 == whole, "another set");
-        // What divides no work has nothing to warn of.
+        // Commands that divide no work give no warning.
         for line in [
             "recipe",
             "inspect",

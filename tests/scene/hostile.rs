@@ -74,7 +74,7 @@ proptest! {
     }
 }
 
-/// What a file gives, which must come soon.
+/// The result of loading a file, which must take less than a minute.
 #[track_caller]
 fn soon(folder: &Folder, name: &str) -> Result<Scene, SceneError> {
     let start = Instant::now();
@@ -83,19 +83,19 @@ fn soon(folder: &Folder, name: &str) -> Result<Scene, SceneError> {
     read
 }
 
-/// The scene in one file, which must be read soon.
+/// The scene in one file, which must load in less than a minute.
 #[track_caller]
 fn soon_loaded(name: &str, text: &str) -> Scene {
     soon(&Folder::new(&[(name, text)]), name).unwrap()
 }
 
-/// Checks that the file is refused soon, with a message that holds all of `parts`.
+/// Checks that the file is refused within a minute, with a message that holds all of `parts`.
 #[track_caller]
 fn assert_soon_refused(folder: &Folder, name: &str, parts: &[&str]) {
     assert_says(&soon(folder, name).unwrap_err().to_string(), parts);
 }
 
-/// The text of many numbered parts.
+/// The concatenated text of `count` numbered parts.
 fn many(count: usize, part: impl Fn(usize) -> String) -> String {
     (0..count).map(part).collect()
 }
@@ -217,7 +217,7 @@ fn very_many_elements_and_attributes_are_refused() {
     let spaces = many(100_000, |i| format!(" xmlns:a{i}='b'"));
     let text = format!("<scene>\n<a{attributes}/><a{spaces}><a/></a></scene>");
     assert_eq!(soon_loaded("a.xml", &text).materials, []);
-    // Together, by files that are small enough.
+    // Files that are small enough alone exceed the limits together.
     let whole = format!("<scene>\n{}</scene>", "<include filename='b.xml'/>".repeat(4));
     let load = |part: String, parts: &[&str]| {
         let folder =
@@ -228,7 +228,7 @@ fn very_many_elements_and_attributes_are_refused() {
     load(format!("<!--{}-->", " ".repeat(40_000_000)), &["a.xml:2:", "128 MiB"]);
 }
 
-/// Each of them stands for itself.
+/// An ampersand or a token that begins no reference stands for itself.
 #[test]
 fn very_many_ampersands_and_tokens_are_read() {
     for many in ["&", "&#1", "<a>"] {
@@ -306,7 +306,7 @@ fn mixtures_of_each_other_are_warned_of_at_their_place() {
             assert_eq!(names(&scene), ["metal"]);
         }
     }
-    // Each of the next twice: a diamond, and no circle.
+    // Each mixture has the next one twice, which is no circle.
     let chain = many(64, |i| mix(&format!("m{i}"), &format!("'m{0}' 'm{0}'", i + 1)));
     let end = metal.replace("metal", "m64");
     assert_eq!(names(&load("a.pbrt", &(chain + &end))), ["m64"]);
@@ -387,7 +387,7 @@ fn gltf_scenes_that_would_fill_the_memory_are_refused() {
     let primitives = format!("'meshes':[{{'primitives':[{elements}{{}}]}}]");
     let scene = soon_loaded("a.gltf", &document(&primitives));
     assert_warned(&scene, "a.gltf", &["mesh 0", "primitives: ", "more than 1048576 elements"]);
-    // For each of the materials it is said why the texture cannot be read, which quotes it.
+    // The reason, which quotes the long text, is the same for each of the materials.
     let material = "{'pbrMetallicRoughness':{'metallicRoughnessTexture':{'index':0}}},";
     let materials = format!("'materials':[{}{{}}]", material.repeat(99_999));
     let textures = format!("'textures':[{{'source':'{}'}}]", "x".repeat(16 << 20));
@@ -411,7 +411,7 @@ fn recipes_that_would_take_hours_are_refused() {
     assert_refused("a.toml", &gtr, ":5003:16", &["more than 1000", "distribution"]);
 }
 
-/// A name stands in every lobe of its material.
+/// Every lobe of a material repeats its name.
 #[test]
 fn names_longer_than_names_are_shortened() {
     let name = "b".repeat(1025);
@@ -460,7 +460,7 @@ fn long_words_get_no_suggestion() {
     assert!(warning.contains("nothing has the id") && warning.len() < 2000, "{}", warning.len());
 }
 
-/// It is read once for all of them.
+/// The image is read once for all textures.
 #[test]
 fn many_textures_of_one_large_image_are_read_soon() {
     let material =
@@ -477,7 +477,7 @@ fn many_textures_of_one_large_image_are_read_soon() {
     }
 }
 
-/// A message may quote the scene.
+/// Messages quote the scene, which may have very long texts.
 #[test]
 fn messages_have_a_length() {
     let long = "x".repeat(1 << 20);
@@ -491,7 +491,7 @@ fn messages_have_a_length() {
     }
 }
 
-/// Every lookup by name is by an index.
+/// Names are looked up in an index.
 #[test]
 fn documents_of_many_nodes_take_linear_time() {
     let nodes = many(30_000, |i| {
@@ -506,8 +506,8 @@ fn documents_of_many_nodes_take_linear_time() {
     assert!(scene.materials.len() == 30_000 && scene.materials[29_999].name == "m29999");
 }
 
-/// A scene may have very many of what is not understood, each with a long text, and each of them
-/// may be told the names that are known.
+/// A scene may have very many unknown elements, each with a long text, and a warning for each
+/// suggests known names.
 #[test]
 fn what_is_not_understood_is_bounded() {
     // Suggestions for 20 000 names among 10 000.
@@ -517,7 +517,7 @@ fn what_is_not_understood_is_bounded() {
     let scene = soon_loaded("a.pbrt", &(named + &lost));
     assert_eq!(scene.warnings.len(), 10_001);
     assert!(scene.warnings[10_000].contains("further warnings are not listed"));
-    // One long value that very many materials quote.
+    // Very many materials quote one long value.
     let long = "x".repeat(4000);
     let texture = format!("Texture 't' 'float' 'constant' 'float value' '{long}'\n");
     let materials = "Material 'conductor' 'texture roughness' 't'\n".repeat(20_000);
@@ -530,7 +530,7 @@ fn what_is_not_understood_is_bounded() {
         format!("{{'asset':{{'version':'2.0'}},'materials':[{materials}{{'name':'m'}}]}}")
     };
     let members = |count: usize| many(count, |i| format!("'a{i}':0,"));
-    // Of one material a hundred are warned of.
+    // For one material at most a hundred are warned of.
     let one = soon_loaded("a.gltf", &gltf(&format!("{{{}'b':0}},", members(1_000_000))));
     assert_eq!(one.warnings.len(), 100);
     let each = format!("{}'b':0", members(100));

@@ -2,8 +2,8 @@
 
 use crate::{Folder, assert_not_understood, assert_refused, load};
 
-/// A scene of some format, with a place marked by a character that is taken out, and a part of the
-/// message.
+/// Checks the line and column of an error: `$` in `marked` is taken out, and stands before the
+/// error.
 fn check(name: &str, marked: &str, message: &str) {
     let before = marked.split('$').next().unwrap();
     let line = 1 + before.matches('\n').count();
@@ -48,7 +48,7 @@ fn in_pbrt_scenes() {
 #[test]
 fn in_mitsuba_scenes() {
     check("s.xml", "$<s>\n</s>", "is not the root");
-    // The place of a part of a BSDF stands in the reason why that is not understood.
+    // The reason why a BSDF is not understood has the line and column of the wrong element in it.
     let bsdf = "<bsdf id='a' type='roughconductor'><float name='alpha' value='x'/></bsdf>";
     let scene = load("s.xml", &format!("<scene>\n\n<!-- é\n-->é{bsdf}</scene>"));
     assert_not_understood(&scene, "a", ":4:5", &["s.xml:4:40: ", "number"]);
@@ -75,7 +75,7 @@ fn in_xml_that_is_not_well_formed() {
     ] {
         check("s.xml", marked, message);
     }
-    // What no reader of a renderer looks at.
+    // Renderers do not check any of these.
     let metal = "<bsdf type='roughconductor'/>";
     for text in [
         format!("<scene>\0&nbsp; & <![CDATA[ & ]]>{metal}</scene>"),

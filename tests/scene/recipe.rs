@@ -114,7 +114,7 @@ fn equal_axes_are_isotropic_and_equal_ranges_are_not() {
     let sigma = |text: &str| material_of(&format!("sigma = {text}\ngamma = 2.0")).lobe.roughness;
     assert_eq!(sigma("[0.2, 0.2]"), isotropic(0.2));
     assert_eq!(sigma("[0, 0]"), Roughness::Smooth);
-    // Both axes cover the range, but not together.
+    // Both axes cover the same range, but independently.
     let range = "{ min = 0.1, max = 0.2 }";
     assert!(!sigma(&format!("[{range}, {range}]")).is_isotropic());
 }

@@ -24,7 +24,7 @@ pub struct AlbedoTable {
     pub masking: Masking,
     /// The coordinate of σ.
     pub roughness: LogRoughness,
-    /// Its values at the first node and at the last. Nodes are even between them.
+    /// Its values at the first node and at the last; nodes are evenly spaced.
     pub ends: [f64; 2],
     /// The smallest σ and the largest.
     pub sigma: [f64; 2],
@@ -34,15 +34,14 @@ pub struct AlbedoTable {
     pub view: ViewBlend,
     /// Nodes along the view.
     pub views: usize,
-    /// E − 1, and what bias and F82 have over E times those of a mirror: by σ, by view.
+    /// E − 1, and the excess of bias and of F82 over E times those of a mirror: by σ, by view.
     pub values: Vec<[f32; 3]>,
     /// ln(1 − E_avg), so that small losses keep their order of magnitude between nodes, and the
-    /// averages of bias and F82, at even nodes between the same ends.
+    /// averages of bias and F82, at evenly spaced nodes between the same ends.
     pub averages: Vec<[f32; 3]>,
     /// The largest error of the averages between these nodes, of E, bias or F82.
     pub average_error: f64,
-    /// Errors of the table against the model, of E, bias and F82: for σ ≥ 0.01 and cos θ ≥ 0.02,
-    /// and elsewhere.
+    /// Errors of E, bias and F82 against the model: for σ ≥ 0.01 and cos θ ≥ 0.02, and elsewhere.
     pub errors: [Option<f64>; 2],
 }
 
@@ -118,7 +117,7 @@ fn average_of(table: &Table, sigma: f64, gamma: f64) -> Option<[f64; 3]> {
     Some([albedo.lost_average(), moments.bias, moments.f82].map(f64::from))
 }
 
-/// The largest of some figure of a table's certificate over E and its parts.
+/// The largest `figure` of a table's certificate over E, bias and F82.
 fn worst(table: &Table, figure: impl Fn(&Errors) -> Option<f64>) -> Option<f64> {
     table.certificate.errors.values().filter_map(figure).reduce(f64::max)
 }

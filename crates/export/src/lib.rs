@@ -32,7 +32,7 @@ pub use shader::{Language, Storage, texture_rows};
 pub use shader::{WIDTH, append_some, for_webgl};
 pub use shape::Shape;
 
-/// What can be written.
+/// The language of an export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Target {
     /// Headers for C99, C++11, CUDA and HIP.
@@ -44,7 +44,7 @@ pub enum Target {
 /// A file of an export.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExportFile {
-    /// Its name, to stand in the same folder as all others of the target.
+    /// File name. All files of a target go into one folder.
     pub name: String,
     /// Its bytes; text is UTF-8.
     pub contents: Vec<u8>,
@@ -71,7 +71,7 @@ fn open_exr(
 }
 
 /// The files of a target. Those with functions, which do not depend on the shapes, come first. Then
-/// comes one a shape, or for shaders what holds the data of all.
+/// comes one file for each shape, or for shaders the files with the data of all shapes.
 ///
 /// # Panics
 /// If there are no shapes for shaders.

@@ -1,18 +1,16 @@
-//! What lookups of a shape read, by name: the members of its description and its tables. Every
-//! target writes these, in this order.
+//! The members of a shape's description and its tables, by name, which lookups read; every target
+//! writes them in this order.
 
 use microfacet_core::shape::s_of_gamma;
 use microfacet_sampler::port::ShapeTables;
 
 use super::{AlbedoTable, Shape};
 
-/// A member of a shape's description.
 pub(super) struct Member {
     pub(super) name: &'static str,
     pub(super) value: Value,
 }
 
-/// What it holds.
 pub(super) enum Value {
     /// Yes or no.
     Flag(bool),
@@ -25,7 +23,7 @@ pub(super) enum Value {
 }
 
 impl Value {
-    /// It as a number, a flag as 0 or 1; `None` of a table.
+    /// The value as a number, a flag as 0 or 1; `None` for a table.
     pub(super) fn number(&self) -> Option<f32> {
         match *self {
             Self::Flag(flag) => Some(f32::from(u8::from(flag))),
@@ -36,7 +34,7 @@ impl Value {
     }
 }
 
-/// A table of a shape: rows of so many numbers.
+/// A table of a shape: rows of [`Part::columns`] numbers.
 #[derive(Clone, Debug)]
 pub struct Part<'a> {
     /// Its name, such as `masking` or `albedo_height_correlated`.
@@ -47,7 +45,7 @@ pub struct Part<'a> {
     pub columns: usize,
 }
 
-/// What stands before the names of each list of members, where they stand in one.
+/// Prefixes of the names in each list of [`Shape::lists`], where the lists are joined.
 pub(super) const PREFIXES: [&str; 3] = ["", "uncorrelated.", "height_correlated."];
 
 impl Shape {
@@ -58,7 +56,7 @@ impl Shape {
     }
 
     /// The numbers of its description by name, as `student_t.json` has them (`docs/shaders.md`);
-    /// places of tables are not among them. A flag is 0 or 1.
+    /// offsets of tables are not among them. A flag is 0 or 1.
     pub fn numbers(&self) -> Vec<(String, f32)> {
         let of = |(prefix, list): (&str, Vec<Member>)| -> Vec<(String, f32)> {
             let named = |Member { name, value }| Some((format!("{prefix}{name}"), value.number()?));
@@ -87,7 +85,7 @@ impl Shape {
     }
 }
 
-/// The lobe; what GGX does not need is 0.
+/// The members of the lobe; those that GGX does not need are 0.
 fn lobe(shape: &Shape) -> Vec<Member> {
     let tables = shape.tables.as_ref();
     let heavy = tables.and_then(|tables| tables.heavy.as_ref());
@@ -122,7 +120,6 @@ fn lobe(shape: &Shape) -> Vec<Member> {
     members.map(|(name, value)| Member { name, value }).into()
 }
 
-/// A table of albedos.
 fn albedo(table: &AlbedoTable) -> Vec<Member> {
     let [values, averages] = names(table);
     let [first, last] = table.ends;

@@ -23,7 +23,7 @@ pub struct Shape {
     pub errors: Errors,
     /// The program that baked the set.
     pub generator: String,
-    /// The number of its values, raised whenever they change.
+    /// The version of the set's values, raised whenever they change.
     pub numerics: u32,
 }
 
@@ -73,13 +73,13 @@ impl Shape {
         })
     }
 
-    /// The largest of what is said of the albedos under both forms of masking.
+    /// The larger of `of` under both forms of masking.
     pub(super) fn worst_albedo(&self, of: impl Fn(&AlbedoTable) -> Option<f64>) -> Option<f64> {
         self.albedos.iter().filter_map(of).reduce(f64::max)
     }
 }
 
-/// Only of a shape beyond the default set, in a set without albedos.
+/// This error needs a shape outside the default set, in a set without albedos.
 fn no_albedo(gamma: f64) -> MaterialError {
     MaterialError::NoTable(format!("albedos of gamma {gamma} for every sigma"))
 }

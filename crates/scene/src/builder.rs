@@ -38,8 +38,7 @@ impl Lobe {
     }
 }
 
-/// Some of a format's kinds of materials or nodes, and parameters that all of them have; words with
-/// spaces between.
+/// Kinds of materials or nodes, and parameters that all of them have; both separated by spaces.
 pub(super) type Row = (&'static str, &'static str);
 
 /// The parameters that the `rows` give to a kind; none if it is in no row.
@@ -48,12 +47,12 @@ pub(super) fn names_of(rows: &[Row], kind: &str) -> Vec<&'static str> {
     of_kind.flat_map(|(_, names)| names.split(' ')).collect()
 }
 
-/// Whether a word is among words with spaces between.
+/// Whether `word` is one of `words`, which are separated by spaces.
 pub(super) fn has_word(words: &str, word: &str) -> bool {
     words.split(' ').any(|one| one == word)
 }
 
-/// A text that is kept for each of many materials, without the end of a very long one.
+/// A text cut at `limits::MESSAGE` bytes, since each of many materials may keep one.
 pub(super) fn shortened(text: &str) -> Cow<'_, str> {
     if text.len() <= limits::MESSAGE {
         return text.into();
@@ -62,7 +61,7 @@ pub(super) fn shortened(text: &str) -> Cow<'_, str> {
     format!("{} ...", &text[..end.unwrap_or(0)]).into()
 }
 
-/// Checks that there may be one more of what there are `count`.
+/// Refuses a scene that already has `limits::MATERIALS` of something.
 pub(super) fn check_count(count: usize, what: &str, place: &Place) -> Result<()> {
     if count < limits::MATERIALS {
         return Ok(());
@@ -99,7 +98,6 @@ impl Builder {
         Scene { included, ..self.scene }
     }
 
-    /// Adds a lobe of the material `name`.
     pub(super) fn add(&mut self, name: &str, place: &Place, used: bool, lobe: Lobe) -> Result<()> {
         check_count(self.count(), "materials", place)?;
         let name = shortened(name);
@@ -183,9 +181,9 @@ impl Builder {
     ) -> Result<()> {
         match read {
             Err(SceneError { place: at, kind: SceneErrorKind::Invalid(why) }) => {
-                // The place of a part of the material; its own is said anyway.
+                // The material's own place is listed with it.
                 let why = if at == *place { why } else { format!("{at}: {why}") };
-                // So is the kind.
+                // Its kind is listed, too.
                 let own = why.strip_prefix(kind).and_then(|why| why.strip_prefix(": "));
                 self.not_understood(name, kind, place, own.unwrap_or(&why))
             }
@@ -225,8 +223,7 @@ impl Builder {
         }
     }
 
-    /// The text "; did you mean `x`?", or an empty one, as by [`did_you_mean`]; also empty
-    /// after a while in a scene of very many unknown names, since each takes time.
+    /// As [`did_you_mean`], but empty after `limits::HINTS` compared names, since each takes time.
     pub(super) fn did_you_mean<'a>(
         &self,
         word: &str,

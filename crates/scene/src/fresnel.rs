@@ -1,4 +1,4 @@
-//! Fresnel terms: what is impossible in one, and metals by name.
+//! Fresnel terms: checks of their numbers, and metals by name.
 
 use crate::Result;
 use microfacet_baker::scene::{Place, Reflectance};
@@ -15,7 +15,6 @@ pub(super) fn dielectric(eta: f64, place: &Place) -> Result<Reflectance> {
     }
 }
 
-/// The Fresnel term of a conductor.
 pub(super) fn conductor(eta: [f64; 3], k: [f64; 3], place: &Place) -> Result<Reflectance> {
     let finite = eta.iter().chain(&k).all(|x| x.is_finite());
     if finite && eta.iter().all(|&eta| eta > 0.0) && k.iter().all(|&k| k >= 0.0) {
@@ -29,7 +28,7 @@ pub(super) fn conductor(eta: [f64; 3], k: [f64; 3], place: &Place) -> Result<Ref
 
 /// A metal by its chemical symbol in pbrt's spectra and Mitsuba's presets, if it is known.
 ///
-/// The index is that of [`Metal`], of which the renderer's own spectrum is another measurement.
+/// The indices of [`Metal`] and of the renderer's own spectrum are different measurements.
 pub(super) fn metal(symbol: &str) -> Option<Metal> {
     Some(match symbol {
         "Ag" => Metal::Silver,

@@ -1,5 +1,5 @@
 //! The text of a scene and of the files that it includes: checks for circular inclusion, and one
-//! limit for all, since a few files that include each other twice amount to any number.
+//! limit of size for all, since a few files that include each other twice come to any size.
 
 use std::collections::BTreeSet;
 use std::io::{self, Read};
@@ -17,16 +17,16 @@ use crate::limits::{self, Budget};
 /// The files being read, from the scene's own to the innermost included one.
 pub(super) struct Includes {
     open: Vec<PathBuf>,
-    /// How many were included so far.
+    /// How many files were included so far.
     count: usize,
-    /// Each of those that were found, once.
+    /// The included files that were found, each once.
     found: BTreeSet<PathBuf>,
     /// Bytes of text.
     text: Budget,
 }
 
 impl Includes {
-    /// For a scene of `limit` bytes in all.
+    /// The scene may have `limit` bytes of text in all.
     pub(super) fn new(limit: u64) -> Self {
         Self { open: Vec::new(), count: 0, found: BTreeSet::new(), text: Budget::new(limit) }
     }
@@ -34,7 +34,7 @@ impl Includes {
     /// The text of the scene's own file.
     pub(super) fn open(&mut self, file: &Path) -> Result<Vec<u8>> {
         let place = Place::file(file);
-        // A folder, which is no error of an include here.
+        // A folder is an error here; an included folder only gives a warning.
         input::open(file, u64::MAX).map_err(|error| place.io(error))?;
         self.enter(file, &place)?;
         self.text(file, &place)
@@ -73,7 +73,7 @@ impl Includes {
         self.found.into_iter().collect()
     }
 
-    /// Notes that `file` is read, which `place` asks for; `false` if there is no such file.
+    /// Opens `file`, which `place` includes; `false` if there is no such file.
     fn enter(&mut self, file: &Path, place: &Place) -> Result<bool> {
         if self.count > limits::INCLUDES {
             return Err(place.too_large(format!(
@@ -113,7 +113,7 @@ impl Includes {
     /// The text of a file, unpacked, without its byte order mark.
     fn text(&self, file: &Path, place: &Place) -> Result<Vec<u8>> {
         let mut text = Vec::new();
-        // One byte more is refused.
+        // One byte above the limit shows that the text is too long.
         let most = self.text.left() + 1;
         let read = match file.extension().is_some_and(|extension| extension == "gz") {
             true => input::open(file, u64::MAX)
@@ -131,7 +131,7 @@ impl Includes {
                 )));
             }
             Err(error) if text.is_empty() => return Err(Place::file(file).io(error)),
-            // Damage in a packed file is behind what could be unpacked.
+            // A packed file is damaged where its unpacked text ends.
             read => read.map_err(|error| Lines::new(file, &text).place(text.len()).io(error))?,
         };
         self.charge(text.len(), place)?;
@@ -140,7 +140,7 @@ impl Includes {
         Ok(text)
     }
 
-    /// Takes bytes that `place` adds to the text from what may still be read.
+    /// Counts bytes of text, which `place` adds, towards the limit.
     pub(super) fn charge(&self, bytes: usize, place: &Place) -> Result<()> {
         if self.text.take(bytes as u64) { Ok(()) } else { Err(place.too_large(self.spent())) }
     }

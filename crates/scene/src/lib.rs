@@ -16,13 +16,14 @@
 //!
 //! A roughness that comes from an image is the range of that image's pixels, with the scene's
 //! scales and offsets applied. An image that cannot be read counts as [0, 1], with a warning. A
-//! parameter that its material does not have gives one too: it may be a known one mistyped.
-//! Materials that are not microfacet models, and those that were not understood, are listed in
-//! [`Scene::ignored`]; they are not errors. A missing included file gives a warning, since scenes
-//! often travel without their geometry; then every material counts as used. So does one of XML that
-//! is not well formed. Outside recipes a material never refuses its scene, whatever it says. What
-//! does is another kind of document, the file's grammar or version, includes in a circle, and the
-//! limits of size.
+//! parameter that its material does not have gives a warning: it may be misspelt. Materials that
+//! are not microfacet models, and those that were not understood, are listed in [`Scene::ignored`];
+//! they are not errors. An included file that is missing (scenes are often shared without their
+//! geometry), or that is XML and not well formed, gives a warning; in pbrt and Mitsuba every
+//! material then counts as used.
+//!
+//! Outside recipes no content of a material makes the scene an error. Errors are another kind of
+//! document, a wrong grammar or version, includes in a circle, and a size above the limits.
 //!
 //! Scenes far larger than any that exist are refused, with the limit: reading ends within seconds
 //! and about 1 GB of memory, whatever a file holds. Only regular files are read.
@@ -50,7 +51,6 @@ use std::path::Path;
 use microfacet_baker::input;
 use microfacet_baker::scene::{Format, Place, Scene, SceneError, SceneErrorKind};
 
-/// What reads a part of a scene.
 type Result<T, E = SceneError> = std::result::Result<T, E>;
 
 /// Reads the scene description in `path`; the extension determines the format.
@@ -60,8 +60,9 @@ type Result<T, E = SceneError> = std::result::Result<T, E>;
 /// [`SceneErrorKind::UnknownExtension`] for an extension of no known format, [`SceneErrorKind::Io`]
 /// if the file cannot be read, [`SceneErrorKind::Syntax`], [`SceneErrorKind::Foreign`] and
 /// [`SceneErrorKind::TooLarge`] with the place of the error in it. A missing image or included file
-/// is a warning, and what is impossible in one material makes that material one that is
-/// [not understood](microfacet_baker::scene::Ignored::understood); in a recipe it is an error, [`SceneErrorKind::Invalid`].
+/// is a warning, and an impossible value in a material makes that material [not
+/// understood](microfacet_baker::scene::Ignored::understood); in a recipe it is an error,
+/// [`SceneErrorKind::Invalid`].
 pub fn load(path: &Path) -> Result<Scene, SceneError> {
     match Format::of(path) {
         Some(Format::Recipe) => Scene::load_recipe(path),
@@ -71,7 +72,7 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
         Some(Format::MaterialX) => materialx::load(path),
         None => {
             let place = Place::file(path);
-            // What is no file at all has no format either.
+            // A path that cannot be opened is reported as such, whatever its extension.
             input::open(path, u64::MAX).map_err(|error| place.io(error))?;
             let extension = path.extension().unwrap_or_default().into();
             Err(SceneError { place, kind: SceneErrorKind::UnknownExtension(extension) })

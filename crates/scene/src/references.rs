@@ -1,4 +1,4 @@
-//! Things that refer to each other, such as textures: circles, and values that are computed once.
+//! References between textures, nodes or materials: circles, and values that are computed once.
 
 use std::collections::HashMap;
 use std::hash::Hash;
@@ -11,19 +11,19 @@ use crate::limits;
 
 /// A circle among `all` and what they refer to: each refers to the next, and the last to the first.
 ///
-/// Takes time in proportion to the references, and no stack.
+/// Takes time in proportion to the number of references, and does not recurse.
 pub(super) fn circle<T: Copy + Eq + Hash>(
     all: impl IntoIterator<Item = T>,
     references: impl Fn(T) -> Vec<T>,
 ) -> Option<Vec<T>> {
-    // Whether everything that can be reached from it has been followed.
+    // Whether everything that can be reached from the key has been followed.
     let mut done: HashMap<T, bool> = HashMap::new();
     for start in all {
         if done.contains_key(&start) {
             continue;
         }
         done.insert(start, false);
-        // From the first to the last: what is being followed, with the references that are left.
+        // The path that is being followed, with the references that each element has left.
         let mut path = vec![(start, references(start).into_iter())];
         while let Some((one, left)) = path.last_mut() {
             let Some(next) = left.next() else {
@@ -52,7 +52,7 @@ pub(super) fn circle<T: Copy + Eq + Hash>(
 pub(super) struct Memo<K> {
     /// `None` is a value that is being computed.
     values: HashMap<K, Option<Interval>>,
-    /// Those that are being computed, from the outermost.
+    /// Keys of the values that are being computed, outermost first.
     open: Vec<K>,
 }
 

@@ -19,14 +19,14 @@ pub struct Survey {
     pub files: Vec<File>,
     /// What all planned scenes need, each thing once, with its [`Need::id`].
     pub needs: BTreeMap<String, Need>,
-    /// What albedos would add to that which were not asked for ([`Library::offered`]).
+    /// What albedos that were not asked for would add ([`Library::offered`]).
     pub offered: BTreeMap<String, Need>,
 }
 
 /// One file of a [`Survey`].
 #[derive(Clone, Debug)]
 pub struct File {
-    /// Its path.
+    /// The path of the file.
     pub path: PathBuf,
     /// What became of it.
     pub outcome: Outcome,
@@ -81,13 +81,13 @@ pub fn group(verdict: &Verdict) -> &'static str {
 #[derive(Default)]
 struct Read {
     needs: Vec<(String, Need)>,
-    /// What was not asked for.
+    /// Needs of albedos that were not asked for.
     offered: Vec<(String, Need)>,
     included: Vec<PathBuf>,
 }
 
 impl Survey {
-    /// Reads and plans all scenes below `folder`. Links and hidden files are passed over.
+    /// Reads and plans all scenes below `folder`. Links and hidden files are skipped.
     ///
     /// With [`Options::strict`] a scene with any [doubt](Scene::doubts) is refused.
     pub fn new(
@@ -134,7 +134,7 @@ impl Survey {
             }
             survey.files.push(file);
         }
-        // Where a scene takes long another may need the same anyway.
+        // An albedo that one scene did not ask for may be needed by another.
         let Self { needs, offered, .. } = &mut survey;
         offered.retain(|id, _| !needs.contains_key(id));
         survey
@@ -178,7 +178,7 @@ fn planned(
     }
     let library = Library::new(scene, per_set, options).map_err(|why| why.to_string())?;
     read.needs = library.needs(target).map_err(|why| why.to_string())?;
-    // What no table can hold is refused where it is asked for.
+    // An error here would concern only albedos that were not asked for.
     read.offered = library.offered(target).unwrap_or_default();
     let ids = |needs: &[(String, Need)]| needs.iter().map(|(id, _)| id.clone()).collect();
     let (needs, offered) = (ids(&read.needs), ids(&read.offered));

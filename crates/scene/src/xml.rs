@@ -1,13 +1,11 @@
-//! XML as a tree of owned elements with their places, shared by the readers of Mitsuba and
-//! MaterialX.
+//! XML as a tree of elements with their places, for the readers of Mitsuba and MaterialX.
 //!
 //! The parsers of renderers check no namespaces, take a raw "<" or "&" in an attribute as a
-//! character, and a declaration wherever it stands. Documents of MaterialX have all of these:
-//! prefixes that nothing declares, tokens such as `<UDIM>` in file names, "this & that" in a
-//! description, and a space before `<?xml`. So they are read here, too, as is what the parser does
-//! not look at: characters and names that XML does not have, attributes without a space between
-//! them, and a document type. One that declares entities is refused, since what they stand for
-//! would be left out.
+//! character, and accept a declaration anywhere. Documents of MaterialX have all of these: prefixes
+//! that nothing declares, tokens such as `<UDIM>` in file names, "this & that" in a description,
+//! and a space before `<?xml`. So these documents are read, and so is what the parser does not
+//! check: characters and names that XML does not have, attributes without a space between them, and
+//! a document type. One that declares entities is refused, since their values would be left out.
 
 use std::collections::HashSet;
 use std::hash::{Hash, Hasher};
@@ -26,7 +24,7 @@ use crate::builder::{Builder, shortened};
 use crate::include::Includes;
 use crate::limits::{self, Budget};
 
-/// An element, without text, comments and namespaces. It equals itself alone.
+/// An element, without text, comments and namespaces. An element equals only itself.
 #[derive(Debug)]
 pub(super) struct Element {
     pub(super) tag: String,
@@ -108,8 +106,7 @@ impl Reader {
     /// Reads the root element of a file that `place` includes under a name, to be followed by
     /// [`Includes::leave`].
     ///
-    /// `None` if there is no such file or it is not well formed: then a warning says so, and what
-    /// follows from it, and the rest of the scene is still read.
+    /// `None`, with a warning that ends with `said`, if the file is missing or not well formed.
     pub(super) fn include(
         &mut self,
         (name, file): (&str, &Path),
@@ -129,7 +126,6 @@ impl Reader {
         }
     }
 
-    /// The root element of a text.
     fn root(&self, file: &Path, text: Vec<u8>) -> Result<Element> {
         let text = String::from_utf8(text).map_err(|_| {
             let why = "is no text in UTF-8";
@@ -165,7 +161,7 @@ impl Reader {
                 }
                 Event::End(_) => {
                     let Some(mut ended) = open.pop() else { continue };
-                    // Most have few children; room for four takes more than the element.
+                    // Most have few children; capacity for four takes more than the element.
                     ended.children.shrink_to_fit();
                     match open.last_mut() {
                         Some(outer) => outer.children.push(ended),
@@ -199,7 +195,7 @@ impl Reader {
     /// An element that begins at `start`, without its children.
     fn element(&self, tag: &BytesStart<'_>, start: usize, lines: &Lines<'_>) -> Result<Element> {
         let place = lines.place(start);
-        // Offsets in the tag count from behind its bracket.
+        // Offsets in the tag count from after its bracket.
         let inside = |offset: usize| lines.place(start + 1 + offset);
         let place_of = |part: &str| inside(part.as_ptr().addr() - tag.as_ptr().addr());
         let name = tag.local_name().into_inner().to_owned();
@@ -209,7 +205,7 @@ impl Reader {
         let mut attributes = Vec::new();
         let mut names = HashSet::new();
         self.take(&place)?;
-        // The parser's own check compares each with each.
+        // The parser's own check for duplicates compares each attribute with each.
         for attribute in tag.attributes().with_checks(false) {
             let attribute = attribute.map_err(|error| {
                 let why = error.to_string();
@@ -236,7 +232,6 @@ impl Reader {
         Ok(Element { tag: name, attributes, children: Vec::new(), place })
     }
 
-    /// Counts an element or an attribute.
     fn take(&self, place: &Place) -> Result<()> {
         if self.parts.take(1) {
             return Ok(());
@@ -249,7 +244,6 @@ impl Reader {
     }
 }
 
-/// Where in a tag an error is.
 fn offset(error: &AttrError) -> usize {
     match *error {
         AttrError::ExpectedEq(offset)
@@ -286,7 +280,7 @@ fn unescaped(value: &str) -> String {
     text
 }
 
-/// Whether the error is one of the text in a file: of its grammar, or that it is none.
+/// Whether the error is in the text of a file: in its grammar, or because it is no UTF-8.
 fn is_malformed(error: &SceneError) -> bool {
     match &error.kind {
         SceneErrorKind::Syntax(_) => true,
@@ -295,7 +289,6 @@ fn is_malformed(error: &SceneError) -> bool {
     }
 }
 
-/// The error for elements that are nested too deep.
 pub(super) fn too_deep(place: &Place) -> SceneError {
     place.syntax(format!("elements are nested more than {} deep", limits::XML_DEPTH))
 }

@@ -96,7 +96,8 @@ pub(super) fn draw_shape(shapes: &[[f64; 2]], random: &mut impl Rng) -> f64 {
 }
 
 /// The shapes that a set can be tested at, as ranges of s: those of its tables, and GGX in closed
-/// form where a material beside them uses it, or where there is no table at all.
+/// form where a material of the set uses it and the tables do not cover it, or where there is no
+/// table.
 pub fn shapes(tables: &Tables) -> Vec<[f64; 2]> {
     let mut shapes = tables.shapes();
     let ggx = tables.provenance().materials.iter().any(|entry| entry.lobe.is_ggx());

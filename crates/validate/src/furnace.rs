@@ -61,8 +61,7 @@ pub struct Walk {
     pub bounces: f64,
 }
 
-/// Runs the furnace for one material and view; σ = 0 is a mirror, and a view at the horizon is
-/// raised to cos θ = 1e-30, one above 1 lowered to that.
+/// Runs the furnace for one material and view. σ = 0 is a mirror; cos θ is clamped to [1e-30, 1].
 ///
 /// # Errors
 /// [`MaterialError`] for a material that the tables do not cover.
@@ -91,16 +90,14 @@ fn lobe(albedo: &Albedo, cos_theta: f32) -> f64 {
     over_lights(|sin, cos| f64::from(albedo.compensation(v, Vec3::new(sin, 0.0, cos))))
 }
 
-/// ∫ f cos θ over the lights of a hemisphere, of an f that does not depend on the azimuth, given
-/// sin θ and cos θ.
+/// ∫ f cos θ over the hemisphere of lights, of f(sin θ, cos θ) that does not depend on the azimuth.
 ///
-/// By the midpoint rule in ln tan θ: a smooth surface loses its light at grazing, and one of heavy
-/// tails turns within its roughness of the normal. In a step of the cosine's logarithm that turn
-/// would be lost, 2.5e-4 of the integral at σ = 0.01 and γ = 1.501.
+/// The midpoint rule in ln tan θ resolves the horizon, where a smooth surface loses its light, and
+/// the normal, around which f of heavy tails changes within the roughness. Even steps of ln cos θ
+/// would miss that change: 2.5e-4 of the integral at σ = 0.01 and γ = 1.501.
 pub(crate) fn over_lights(f: impl Fn(f32, f32) -> f64) -> f64 {
     const STEPS: usize = 4000;
-    /// Lights closer than e⁻¹⁶ to the normal contribute nothing, nor those closer than e⁻³⁰ to the
-    /// horizon.
+    /// Lights within e⁻¹⁶ of the normal or e⁻³⁰ of the horizon contribute nothing.
     const RANGE: [f64; 2] = [-16.0, 30.0];
     let step = (RANGE[1] - RANGE[0]) / STEPS as f64;
     let at = |i: usize| {
@@ -112,7 +109,7 @@ pub(crate) fn over_lights(f: impl Fn(f32, f32) -> f64) -> f64 {
     2.0 * std::f64::consts::PI * (0..STEPS).map(at).sum::<f64>()
 }
 
-/// A view at this cosine, for isotropic lobes.
+/// The view with this cosine and azimuth 0, for isotropic lobes.
 pub fn direction(cos: f32) -> Vec3 {
     Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos)
 }
@@ -127,9 +124,9 @@ pub struct Survey {
     /// Allowed deviation from 1: [`TOLERANCE`], or the error of E that the table's certificate
     /// states, if that is larger.
     pub allowed: f64,
-    /// Where the Kulla–Conty lobe brings back the least light.
+    /// The material and view for which the Kulla–Conty lobe returns the least light.
     pub lowest: Furnace,
-    /// Where it brings back the most.
+    /// The material and view for which it returns the most.
     pub highest: Furnace,
 }
 
@@ -213,14 +210,13 @@ pub fn has_furnace(tables: &Tables) -> bool {
     of_family(tables).next().is_some()
 }
 
-/// The round lobes that a furnace can be run for with one form of masking, a range a table.
+/// The round lobes that a furnace can be run for with one form of masking, by table.
 pub fn domains(tables: &Tables, masking: Masking) -> Vec<LobeSpec> {
     let of = of_family(tables).filter(|(_, of)| *of == masking);
     of.map(|(table, _)| table.subject.lobe.clone()).collect()
 }
 
-/// `count` quantities of an axis in a range, between its nodes; for an axis of a single node, that
-/// node.
+/// `count` quantities of an axis in a range, between its nodes; for a single node, that node.
 fn between(axis: &Axis, range: [f64; 2], count: usize) -> Vec<f64> {
     let [first, last] = axis.ends();
     let mut ends = range.map(|x| axis.coordinate(x).unwrap_or(f64::NAN).clamp(first, last));

@@ -1,5 +1,5 @@
 //! Tests of tables from outside: what the sampler draws and returns, against the model. They report
-//! errors and never repair, and know nothing of how a table was baked.
+//! errors, and do not depend on how a table was baked.
 //!
 //! | | |
 //! | --- | --- |

@@ -27,8 +27,7 @@ pub struct Record {
     pub rejected: usize,
     /// Allowed deviation of an integral of the density from 1.
     pub pdf_tolerance: f64,
-    /// The integral of the density that is furthest from 1; `None` without configurations, or if
-    /// it is not finite.
+    /// The integral of the density furthest from 1; `None` without configurations or if not finite.
     pub worst_pdf_integral: Option<f64>,
     /// The configurations, the smallest p-value first.
     pub configurations: Vec<Tested>,
@@ -134,7 +133,7 @@ impl From<&Survey> for Returned {
 /// # Errors
 /// [`LoadError::Invalid`](microfacet_tables::LoadError) for a set that could not be written.
 pub fn identity(set: &Tables) -> Result<String, microfacet_tables::LoadError> {
-    /// The digits, where a document has them.
+    /// The member of a description that has the digits.
     #[derive(Deserialize)]
     struct Sealed {
         checksum: String,
@@ -194,7 +193,7 @@ mod tests {
         assert_eq!(serde_json::from_str::<Record>(&text).unwrap(), record);
     }
 
-    /// JSON has no NaN, and a failed test must not make a record that cannot be read.
+    /// JSON has no NaN, and the record of a failed test must be readable.
     #[test]
     fn what_is_not_finite_is_read_as_nan() {
         let mut record = record();

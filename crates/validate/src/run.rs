@@ -15,9 +15,9 @@ use super::pdf_integral;
 /// Probability with which a run of [`USUAL`] configurations rejects a correct set, or correct
 /// BSDFs.
 pub const LEVEL: f64 = 0.01;
-/// Fewer configurations than this are judged as if they were among so many: a single one would
-/// else reject a correct set for one seed in a hundred, and a rejection found among many would
-/// change its level when it is repeated alone.
+/// The level of a single test is that of a run of at least this many configurations. Else a run of
+/// one would reject a correct set for one seed in a hundred, and a rejection found among many would
+/// be judged at another level when it is repeated alone.
 pub const USUAL: usize = 100;
 /// Allowed deviation of the integral of `table_pdf` from one.
 pub const PDF_TOLERANCE: f64 = 1e-6;
@@ -60,7 +60,7 @@ pub trait Judged {
     /// The smallest p-value of its tests.
     fn p(&self) -> f64;
 
-    /// Whether what is no statistical test of it is right.
+    /// Whether its tests that are not statistical pass.
     fn sound(&self) -> bool {
         true
     }
@@ -100,7 +100,7 @@ impl Outcome {
 const COUNTED: usize = 4096;
 
 /// Judges all configurations in parallel, each by a number of χ² tests, and counts their samples in
-/// a stage of the progress; `one` calls what it is given for each sample.
+/// a stage of the progress; `one` calls its second argument for each sample.
 pub(crate) fn judge<C: Sync, R: Judged + Send, E: Send>(
     configurations: &[C],
     tests: usize,
@@ -108,7 +108,7 @@ pub(crate) fn judge<C: Sync, R: Judged + Send, E: Send>(
     stage: &Stage,
     one: impl Fn(&C, &mut dyn FnMut()) -> Result<R, E> + Sync,
 ) -> Result<Outcome<R>, E> {
-    // One more for what does not depend on the number of samples.
+    // One step more for the work that does not depend on the number of samples.
     stage.split(configurations.len() * (1 + samples / COUNTED));
     let counted = |configuration| {
         let mut drawn = 0;
@@ -127,8 +127,7 @@ pub(crate) fn judge<C: Sync, R: Judged + Send, E: Send>(
     Ok(Outcome { level: sidak(LEVEL, tests * reports.len().max(USUAL)), reports })
 }
 
-/// The estimated seconds on the current threads of `count` parts of work that take so many
-/// microseconds each.
+/// The estimated seconds on the current threads of `count` tasks of `microseconds` each.
 pub(crate) fn on_threads(count: usize, microseconds: f64) -> f64 {
     1e-6 * microseconds * count as f64 / rayon::current_num_threads() as f64
 }

@@ -77,7 +77,7 @@ impl Worst {
 /// A broken rule.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Violation {
-    /// Number of times.
+    /// How often it was broken.
     pub count: u64,
     /// The offending value that was largest in magnitude.
     pub worst: Worst,
@@ -86,7 +86,7 @@ pub struct Violation {
 /// Quantities whose error against the model is measured, in the order of [`Region::errors`].
 pub const ERRORS: [&str; 4] = ["g1 abs", "d rel", "pdf rel", "cdf abs"];
 
-/// The result for a part of the domain.
+/// The result for a region of the domain.
 #[derive(Clone, Debug, Default)]
 pub struct Region {
     /// Points tested.
@@ -122,7 +122,7 @@ pub const ROUGHNESSES: [&str; 2] = ["ordinary", "extreme"];
 #[derive(Clone, Debug, Default)]
 pub struct Report {
     /// Indexed by position in [`SHAPES`], [`VIEWS`] and [`ROUGHNESSES`]. Not on the stack, which a
-    /// run of many points on many threads would overflow: it keeps some reports for each halving.
+    /// run on many threads would overflow: each halving of the points holds some reports.
     pub regions: Box<[[[Region; ROUGHNESSES.len()]; VIEWS.len()]; SHAPES.len()]>,
 }
 

@@ -1,11 +1,11 @@
-//! What is not understood in a scene, and liberties of its writers, while the rest is read.
+//! Materials that are not understood, and other deviations, while the rest is read.
 
 use microfacet_baker::scene::{Roughness, Scene};
 
 use super::document;
 use crate::{assert_not_understood, assert_warned, isotropic, load, named, names};
 
-/// A good material after others, which must be read whatever they say.
+/// The good material after `materials` must be read whatever these contain.
 pub(super) fn beside(materials: &str, rest: &str) -> Scene {
     let good = "{'name': 'good', 'pbrMetallicRoughness': {'roughnessFactor': 0.5}}";
     let scene = load("a.gltf", &document(&format!("{materials},\n{good}"), rest));

@@ -41,7 +41,7 @@ fn a_dielectric_has_that_of_its_index() {
     assert_f0(&format!("{GLASS}, {COPPER}"), "", [0.04; 3]);
     assert_f0(GLASS, "'KHR_materials_ior': {'ior': 2}", [1.0 / 9.0; 3]);
     assert_f0(GLASS, "'KHR_materials_ior': {'ior': 0}", [1.0; 3]);
-    // Colours and textures of metals have no say.
+    // Colours and textures of metals have no influence.
     assert_f0(&format!("{GLASS}, 'baseColorFactor': [1.2, 1, 1, 1]"), "", [0.04; 3]);
     let textures =
         format!("{GLASS}, 'baseColorTexture': {TEXTURE}, 'metallicRoughnessTexture': {TEXTURE}");
@@ -75,7 +75,7 @@ fn the_specular_extension_tints_a_dielectric() {
     let colour = "'specularColorFactor': [0.5, 1, 100]";
     assert_f0(GLASS, &specular(""), [0.04; 3]);
     assert_f0(GLASS, &specular(colour), [0.02, 0.04, 1.0]);
-    // F90 is the factor, which is not Schlick's 1.
+    // `specularFactor` is F90, here other than Schlick's 1.
     assert_eq!(fresnel(GLASS, &specular("'specularFactor': 0.5")), None);
     for texture in ["specularTexture", "specularColorTexture"] {
         assert_eq!(fresnel(GLASS, &specular(&format!("'{texture}': {TEXTURE}"))), None);
@@ -105,7 +105,7 @@ fn a_dielectric_that_reflects_nothing_has_no_lobe() {
     assert_eq!(none.materials, []);
     let [ignored] = &none.ignored[..] else { panic!("{:?}", none.ignored) };
     assert!(ignored.understood && ignored.reason.contains("specularFactor is 0"), "{ignored}");
-    // What it transmits passes through its facets, and metal reflects.
+    // A dielectric that transmits has facets, and metal reflects.
     let through = scene(GLASS, ", 'KHR_materials_transmission': {'transmissionFactor': 1}");
     assert_eq!((through.materials.len(), through.materials[0].fresnel), (1, None));
     assert_eq!(scene("'metallicFactor': 0.5", "").materials.len(), 1);

@@ -1,4 +1,4 @@
-//! Values of a wrong kind, each of which costs no more than what it is a part of.
+//! Values of a wrong kind, each of which affects only what contains it.
 
 use super::degraded::beside;
 use super::{TEXTURED, document};
@@ -104,7 +104,7 @@ fn a_texture_that_cannot_be_read_covers_all() {
         assert_eq!(scene.ignored, []);
         assert_warned(&scene, "a.gltf", &["texture 0 cannot be read (", why, "[0, 1]"]);
     }
-    // It matters only where it is used.
+    // An unreadable texture has no effect unless it is used.
     let scene = beside("{}", ", 'textures': [null], 'images': [5], 'buffers': ['']");
     assert_eq!((scene.ignored.len(), scene.warnings.len()), (0, 0));
 }
@@ -133,17 +133,17 @@ fn a_required_extension_that_is_not_known_costs_its_materials_alone() {
     let parts = ["ADSK_x is not known", "extensionsRequired"];
     assert_not_understood(&scene, "m", "a.gltf", &parts);
     assert_eq!((names(&scene), scene.ignored.len()), (vec!["good"], 1));
-    // One that is not required may be left aside (specification, 3.12).
+    // An extension that is not required may be ignored (specification, 3.12).
     let scene = beside(&one("ADSK_x"), &required("'ADSK_y'"));
     assert_eq!((named(&scene, "m").lobe.roughness, scene.ignored.len()), (isotropic(1.0), 0));
-    // Of these some are read, and the others leave the lobe as it is.
+    // Known extensions are read, or leave the lobe as it is.
     let known = "anisotropy clearcoat ior specular transmission iridescence dispersion \
                  emissive_strength volume diffuse_transmission";
     for known in known.split(' ').map(|name| format!("KHR_materials_{name}")) {
         let scene = beside(&one(&known), &required(&format!("'{known}'")));
         assert_eq!((names(&scene), scene.ignored.len()), (vec!["m", "good"], 0), "{known}");
     }
-    // What primitives require has to do with geometry.
+    // Extensions of primitives concern geometry.
     let draco = "{'material': 0, 'extensions': {'KHR_draco_mesh_compression': {}}}";
     let meshes = format!(", 'meshes': [{{'primitives': [{draco}]}}]");
     let scene = beside("{}", &(required("'KHR_draco_mesh_compression'") + &meshes));

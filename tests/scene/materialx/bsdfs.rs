@@ -132,7 +132,7 @@ fn lobes_are_found_through_layers_and_mixtures() {
 
     let fabric = end("layer", &[("top", "nodename='cloth'"), ("base", metal)]);
     assert_eq!((names(&fabric), &fabric.ignored[0].name[..]), (vec!["a"], "a.sheen"));
-    // A film changes what it lies on.
+    // A film changes the Fresnel term of the BSDF under it.
     let film = bsdf("thin_film_bsdf", "film", &[])
         + &bsdf("layer", "end", &[("top", "nodename='film'"), ("base", coat)]);
     assert_eq!(of(&film).materials[0].fresnel, None);
@@ -249,7 +249,7 @@ fn a_node_that_is_a_part_of_itself_ends() {
     assert!(scene.ignored[0].reason.contains("connected to itself"), "{}", scene.ignored[0]);
 }
 
-/// Each of many layers has the next twice; without care that takes forever.
+/// Each of many layers has the next one twice: without a memory that takes exponential time.
 #[test]
 fn shared_and_deep_graphs_are_followed_once() {
     let layer = |i: usize, next: &str| {

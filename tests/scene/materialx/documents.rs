@@ -1,4 +1,4 @@
-//! Documents as they are: included, not well formed, with images in tiles.
+//! Documents as programs write them: included, not well formed, with images in tiles.
 
 use super::document;
 use crate::{Folder, assert_close, assert_refused, assert_warned, load, names, png};
@@ -75,7 +75,7 @@ fn tiles_count_together() {
                 assert_close(scene.materials[0].lobe.roughness, r, r);
             };
             check([0.04, 0.16]);
-            // What is no tile is not read.
+            // Files that are no tiles are not read.
             for name in &names[2..] {
                 dark.save(folder.path(name)).unwrap();
             }
@@ -100,13 +100,13 @@ fn what_is_not_well_formed_moves_no_place() {
     assert_eq!(names(&scene), ["a"]);
     assert_eq!(scene.materials[0].origin.place.line, Some(3));
     assert_eq!(scene.materials[0].origin.place.column, Some(1));
-    // Also behind it on one line, and for what the parser refuses.
+    // Places are also right on one line, and for errors of the parser.
     let one = odd.replace('\n', "");
     let scene =
         load("a.mtlx", &format!("{one}<gltf_pbr name='a' type='surfaceshader'/></materialx>"));
     assert_eq!(scene.materials[0].origin.place.column, Some(1 + one.len() as u32));
     assert_refused("a.mtlx", &format!("{odd}<a></b>"), ":3:4", &["expected `</a>`"]);
-    // An include whose prefix is not declared is one.
+    // An include whose prefix is not declared is read.
     let include = "<materialx><xi:include href='b.mtlx'/></materialx>";
     assert!(load("a.mtlx", include).warnings[0].contains("b.mtlx is missing"));
 }
@@ -125,7 +125,7 @@ fn an_ampersand_may_be_a_character() {
         );
         assert_eq!(names(&load("a.mtlx", &text)), ["a"], "{number}");
     }
-    // What else is wrong has its own place.
+    // Other errors have their own place.
     let text = "<materialx doc='this & that'>\n<a b='&'></c></materialx>";
     assert_refused("a.mtlx", text, ":2:10", &["expected `</a>`"]);
 }

@@ -271,7 +271,7 @@ fn a_broken_material_is_named_at_its_place_and_the_others_are_read() {
         let text = node("open_pbr_surface", "a", "surfaceshader", &inputs);
         not_understood(&text.replace("<input", "\n<input"), &parts);
     }
-    // The failure of one leaves nothing behind for another.
+    // A failure in one material does not change the error of another.
     let twice = "<dot name='n'><input name='in' value='x'/></dot>\
         <surfacematerial name='a'><input name='surfaceshader' nodename='s'/></surfacematerial>\
         <surfacematerial name='b'><input name='surfaceshader' nodename='s'/></surfacematerial>\
@@ -312,11 +312,11 @@ fn a_broken_lobe_leaves_the_others() {
             rough(class, &[(roughness, bad), (coat, "1")], &[coated], "a");
             rough(class, &[(of_coat, bad), (coat, "1")], &["a"], coated);
         }
-        // Without its weight a coat may be there; a base under it depends on that.
+        // A coat of unknown weight may exist, and the base under it depends on that.
         if coat == clear {
             rough(class, &[(coat, "x")], &["a"], coated);
         }
-        // What has no weight is not looked at.
+        // A lobe without weight is not evaluated.
         let unused = shader(class, &[(of_coat, f64::NAN)]);
         assert_eq!((names(&unused), unused.ignored.len()), (vec!["a"], 0), "{class}");
     }
@@ -363,7 +363,7 @@ fn a_range_is_a_remapping() {
     let far = load("a.mtlx", &graph(far));
     assert!(far.warnings.iter().any(|it| it.contains("not finite")), "{far:?}");
     assert_eq!(far.materials[0].lobe.roughness.x(), Interval::UNIT);
-    // A constant, of which a Fresnel term may be made.
+    // The result is constant, so it may be an index of refraction.
     let ior = node("range", "r", "float", &[("in", "1"), ("outhigh", "1.7")])
         + &node("open_pbr_surface", "a", "surfaceshader", &[("specular_ior", "nodename='r'")]);
     let eta = load("a.mtlx", &document(&ior)).materials[0].fresnel;

@@ -14,7 +14,7 @@ fn assert_schlick(material: &Material, f0: f64) {
     assert!(found.iter().all(|found| (found - f0).abs() < 1e-12), "{found:?} is not {f0}");
 }
 
-/// Of a metal with the reflectance r at normal incidence, for edge colours 0 and 1.
+/// n and k of a metal with the reflectance r at normal incidence, for edge colours 0 and 1.
 fn gulbrandsen(r: f64, edge: f64) -> [f64; 2] {
     let n = if edge == 0.0 { (1.0 + r.sqrt()) / (1.0 - r.sqrt()) } else { (1.0 - r) / (1.0 + r) };
     // r = ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2)

@@ -1,4 +1,4 @@
-//! What is not understood in a scene, and what only Mitsuba 0.6 has, while the rest is read.
+//! BSDFs that are not understood, and those of Mitsuba 0.6 alone, while the rest is read.
 
 use microfacet_baker::scene::{Reflectance, Roughness, Scene};
 use microfacet_tables::Interval;
@@ -8,7 +8,7 @@ use crate::{
     Folder, anisotropic, assert_not_understood, assert_warned, isotropic, load, named, names,
 };
 
-/// A good BSDF after the text, which must be read whatever the text says.
+/// The good BSDF after the text must be read whatever the text contains.
 fn beside(text: &str) -> Scene {
     let good = "<bsdf type='roughconductor' id='good'><float name='alpha' value='0.2'/></bsdf>";
     let scene = load("a.xml", &scene(&format!("{text}\n{good}")));
@@ -182,7 +182,7 @@ fn what_names_no_file_or_value_is_left_out() {
         let named = format!("\"{folder}\" is a folder");
         assert_warned(&scene, ":2:1", &[&named, "all others count as used"]);
     }
-    // What may use a material is not seen.
+    // A missing file may use any material.
     let shape = "<shape type='cube'><bsdf type='diffuse'/></shape>";
     assert!(!named(&beside(shape), "good").used);
     assert!(named(&beside(&format!("{shape}<include/>")), "good").used);
@@ -207,7 +207,7 @@ fn an_included_file_that_is_not_well_formed_costs_itself_alone() {
         let scene = folder.load("a.xml").unwrap();
         assert_eq!(names(&scene), ["c", "good"]);
         assert_warned(&scene, "a.xml:2:1", &["b.xml is not well formed", why, "are not seen"]);
-        // A change of it changes the scene.
+        // The included file counts as included, since its change may change the scene.
         assert_eq!(scene.included.len(), 2);
     }
 }
@@ -239,14 +239,14 @@ fn a_property_that_a_plugin_has_not_is_warned_of() {
     let typo = ["roughconductor has no parameter `alhpa`", "did you mean `alpha`?"];
     case("roughconductor", &float("alhpa"), &typo);
     case("roughdielectric", &float("intIRO"), &["`intIRO`", "did you mean `int_ior`?"]);
-    // Beside many materials that are none of its problems.
+    // The same next to many sound materials.
     let scene = beside(&format!(
         "{}\n<bsdf type='roughconductor'>{}</bsdf>",
         "<bsdf type='diffuse'/>".repeat(150),
         float("alhpa")
     ));
     assert_warned(&scene, "a.xml:2:29", &typo);
-    // The smooth one has no such property.
+    // A smooth conductor has no such property.
     case("conductor", &float("alpha"), &["conductor has no parameter `alpha`"]);
     case("principled", &float("Roughness"), &["`Roughness`", "did you mean `roughness`?"]);
     case("principledthin", &float("spec_tran"), &["`spec_tran`", "`spec_trans`?"]);
@@ -280,7 +280,7 @@ fn properties_of_either_version_are_not_warned_of() {
         let scene = bsdf(class, &format!("{properties}{inner}"));
         assert_eq!(scene.warnings, [""; 0], "{class} {names}");
     }
-    // What is read of the older spelling.
+    // Properties in the older spelling are read.
     let scene = bsdf("principled", "<float name='specTrans' value='1'/>");
     assert_eq!(scene.warnings, [""; 0]);
     let older = "<float name='alphaU' value='0.2'/><float name='alphaV' value='0.3'/>";

@@ -78,7 +78,7 @@ fn presets_are_metals_where_their_index_is_known() {
 fn polarized_plastic_takes_an_index_of_its_own() {
     let eta = fresnel("pplastic", "<float name='eta' value='1.9'/>");
     assert_eq!(eta, Some(Reflectance::dielectric(1.9)));
-    // Which no other plastic has.
+    // No other plastic has `eta`.
     let other = load("a.xml", &bsdf("roughplastic", "<float name='eta' value='1.9'/>"));
     assert_eq!(other.materials[0].fresnel, Some(Reflectance::dielectric(1.49 / 1.000_277)));
     assert!(other.warnings[0].contains("roughplastic has no parameter `eta`"), "{other:?}");

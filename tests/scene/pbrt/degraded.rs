@@ -1,4 +1,4 @@
-//! What is not understood in a scene, while the rest of it is read.
+//! Materials that are not understood, while the rest of the scene is read.
 
 use microfacet_baker::scene::Scene;
 
@@ -7,7 +7,7 @@ use crate::{
     load, named, names,
 };
 
-/// A good material after the text, which must be read whatever the text says.
+/// The good material after the text must be read whatever the text contains.
 fn beside(text: &str) -> Scene {
     let good = "MakeNamedMaterial 'good' 'string type' 'conductor' 'float roughness' 0.04";
     let scene = load("a.pbrt", &format!("{text}\n{good}"));
@@ -133,7 +133,7 @@ fn materials_of_other_versions_are_not_understood() {
         let parts = [&format!("({class})")[..], "pbrt-v3", "pbrt --upgrade old.pbrt > new.pbrt"];
         assert_not_understood(&scene, &format!("{class} at a.pbrt:1"), ":1:1", &parts);
     }
-    // In both versions.
+    // These materials exist in both versions.
     for class in ["hair", "subsurface", "mix"] {
         let scene = beside(&format!("Material '{class}'"));
         assert!(scene.ignored.iter().all(|ignored| ignored.understood), "{:?}", scene.ignored);
@@ -145,13 +145,13 @@ fn subsurface_beside_materials_of_v3_is_warned_of() {
     let skin = |parameters: &str| format!("Material 'subsurface' {parameters}\n");
     let rough = skin("'float uroughness' 0.04 'float vroughness' 0.09");
     let mixture = "Material 'mix' 'string namedmaterial1' 'good' 'string namedmaterial2' 'good'";
-    // Wherever the other stands.
+    // The warning does not depend on the order of the materials.
     for text in [rough.clone() + "Material 'matte'", rough.clone() + mixture] {
         let scene = beside(&text);
         assert_warned(&scene, ":1:1", &["pbrt-v4", "materials of pbrt-v3", "pbrt --upgrade"]);
         assert_eq!(scene.materials[0].lobe.roughness, anisotropic(0.2, 0.3));
     }
-    // Both versions agree where nothing is mapped, and of a scene of v4 there is no doubt.
+    // Both versions agree where no roughness is mapped, and a scene of v4 alone needs no warning.
     let unmapped = skin("'float roughness' 0.04 'bool remaproughness' false");
     for text in [rough, skin("") + mixture, unmapped + mixture] {
         assert_eq!(beside(&text).warnings, [""; 0]);
@@ -248,7 +248,7 @@ fn a_parameter_that_a_class_has_not_is_warned_of() {
     case(texture, ":1:32", &["constant has no parameter `valu`", "`value`?"]);
 }
 
-/// Whatever pbrt-v4 takes, and what has no part in a lobe.
+/// All parameters that pbrt-v4 takes, also those that do not affect a lobe.
 #[test]
 fn parameters_that_a_class_has_are_not_warned_of() {
     let rough = |prefix: &str| {

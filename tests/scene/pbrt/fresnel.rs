@@ -76,7 +76,7 @@ fn eta_and_k_are_colours_or_names_and_copper_by_default() {
     assert_eq!(index("'spectrum eta' 'metal-Au-eta'"), Some(over(1.0, gold.eta(), copper.k())));
     let colour = [3.5, 2.5, 1.5];
     assert_eq!(index("'rgb k' [ 3.5 2.5 1.5 ]"), Some(over(1.0, copper.eta(), colour)));
-    // Spectra of the scene's own, and textures.
+    // Spectra of samples, and textures.
     assert_eq!(pair("[ 400 1.2 700 1.1 ]", "[ 400 3 700 4 ]"), None);
     assert_eq!(index("'spectrum eta' [ 400 1.2 700 1.1 ]"), None);
     assert_eq!(index("'texture k' 'map'"), None);
@@ -147,7 +147,7 @@ fn other_names_of_spectra_are_warned_of() {
     case("conductor", reflectance, 2, &["reflectance 'paint.spd'", "in a file"]);
     let glass = "'spectrum eta' 'glass-SF5'";
     case("dielectric", glass, 2, &["eta 'glass-SF5'", unknown, "'float eta'"]);
-    // Once for both of its interfaces.
+    // One warning for both interfaces.
     let coat = "'spectrum interface.eta' 'glass-BK8'";
     case("coatedconductor", coat, 2, &["interface.eta 'glass-BK8'", unknown]);
 }

@@ -148,7 +148,7 @@ fn textures_that_double_their_references_take_no_longer() {
              Material 'conductor' 'texture roughness' 't{length}'"
         )
     };
-    // One by one, 2^100 references would never be followed to their end.
+    // Without values that are kept, 2^100 references would be followed.
     assert_eq!(load("a.pbrt", &chain(100)).materials[0].lobe.roughness, isotropic(0.5));
     let scene = load("a.pbrt", &chain(1000));
     let name = "conductor at a.pbrt:1002";

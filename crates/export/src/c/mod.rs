@@ -15,7 +15,6 @@ const HEADER: &str = concat!(
     "\n#endif\n"
 );
 
-/// The name of the file with the functions.
 const HEADER_NAME: &str = "student_t.h";
 
 /// `STUDENT_T_LAYOUT` of the header.
@@ -31,7 +30,6 @@ pub(super) fn files(shapes: &[Shape]) -> Vec<ExportFile> {
     files
 }
 
-/// The file of a shape.
 fn text(shape: &Shape, name: &str) -> String {
     let guard = format!("{}_H", name.to_uppercase());
     let mut text = comment(shape, name);
@@ -56,7 +54,7 @@ fn text(shape: &Shape, name: &str) -> String {
     text + &definition(shape, name) + "\n#endif\n"
 }
 
-/// What a shape's file says of it.
+/// The comment at the head of a shape's file.
 fn comment(shape: &Shape, name: &str) -> String {
     let (gamma, version) = (as_typed(shape.gamma), env!("CARGO_PKG_VERSION"));
     let worst = |of: fn(&AlbedoTable) -> Option<f64>| error(shape.worst_albedo(of));
@@ -120,7 +118,7 @@ fn definition(shape: &Shape, name: &str) -> String {
     )
 }
 
-/// A member in a shape of this name.
+/// A member as C source; `name` is that of the shape.
 fn literal(value: Value, name: &str) -> String {
     match value {
         Value::Flag(flag) => u8::from(flag).to_string(),

@@ -1,5 +1,5 @@
 //! The tables of shapes for shaders: one list of pairs of numbers, as a buffer and as an image, and
-//! a description of what stands where.
+//! a description of where each table is.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ pub(super) const LAYOUT: u32 = 2;
 /// Pairs in a row of the image.
 pub const WIDTH: usize = 512;
 
-/// What `student_t.json` says.
+/// The content of `student_t.json`.
 #[derive(Serialize)]
 struct Description<'a> {
     layout: u32,
@@ -34,7 +34,7 @@ struct Description<'a> {
     crc32: BTreeMap<String, String>,
 }
 
-/// One shape in it; places and lengths are in pairs.
+/// One shape; offsets and lengths are in pairs.
 #[derive(Serialize)]
 struct Entry {
     offset: usize,
@@ -46,14 +46,14 @@ struct Entry {
     albedos_of_default_set: Vec<&'static str>,
 }
 
-/// A member of the shape's description, of which pair i holds those 2i and 2i + 1.
+/// A member of the shape's description; pair i holds the members 2i and 2i + 1.
 #[derive(Serialize)]
 struct Named {
     name: String,
     value: f32,
 }
 
-/// Where a table is in its shape: rows of so many numbers, padded to pairs.
+/// Where a table is in its shape; each row of `columns` numbers is padded to pairs.
 #[derive(Serialize)]
 struct Place {
     offset: usize,
@@ -72,8 +72,8 @@ struct Errors {
     average: f64,
 }
 
-/// Adds data and description of all shapes to the files of functions; the description, which has
-/// the checksums of the others, is the last to be written.
+/// Adds data and description of all shapes to the files of functions; the description comes last,
+/// since it has the checksums of the others.
 pub(super) fn append_files(shapes: &[Shape], files: &mut Vec<ExportFile>) {
     let mut pairs = Vec::new();
     let entry = |shape: &Shape| (as_typed(shape.gamma), append(shape, |_| true, &mut pairs));
@@ -105,7 +105,7 @@ pub(super) fn append_files(shapes: &[Shape], files: &mut Vec<ExportFile>) {
     files.push(ExportFile::new(format!("{NAME}.json"), json + "\n"));
 }
 
-/// Rows of the texture of shapes: more than 2048 are not promised by WebGL 2.
+/// Rows of the texture of these shapes; WebGL 2 guarantees no more than 2048.
 pub fn texture_rows(shapes: &[Shape]) -> usize {
     let mut pairs = Vec::new();
     for shape in shapes {
@@ -114,8 +114,8 @@ pub fn texture_rows(shapes: &[Shape]) -> usize {
     pairs.len().div_ceil(WIDTH)
 }
 
-/// Appends a shape with some of its tables, by name, and returns the place of its first pair. What
-/// reads tables that are left out must not be called.
+/// Appends a shape with some of its tables, by name, and returns the index of its first pair.
+/// Functions that read a table that is left out must not be called.
 pub fn append_some(
     shape: &Shape,
     is_kept: impl Fn(&str) -> bool,
@@ -124,7 +124,7 @@ pub fn append_some(
     append(shape, is_kept, pairs).offset
 }
 
-/// Appends a shape: its members, then its tables, of those that are kept.
+/// Appends a shape: its members, then the tables that are kept.
 fn append(shape: &Shape, is_kept: impl Fn(&str) -> bool, pairs: &mut Vec<[f32; 2]>) -> Entry {
     let offset = pairs.len();
     let lists = shape.lists();
@@ -162,7 +162,7 @@ fn append(shape: &Shape, is_kept: impl Fn(&str) -> bool, pairs: &mut Vec<[f32; 2
     Entry { offset, length: at, members: named, tables, errors, albedos_of_default_set }
 }
 
-/// A member as a number; of a table its place in the shape, which is exact in single precision, or
+/// A member as a number; of a table its offset in the shape, which is exact in single precision, or
 /// 0 if it is left out.
 fn number(value: &Value, tables: &BTreeMap<String, Place>) -> f32 {
     match value {

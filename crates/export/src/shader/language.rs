@@ -29,13 +29,13 @@ pub enum Storage {
 }
 
 impl Language {
-    /// What is asked for; a texture where there are no buffers.
+    /// `asked`, or a texture for a language without buffers.
     pub fn storage(self, asked: Storage) -> Storage {
         if self == Self::GlslEs { Storage::Texture } else { asked }
     }
 
-    /// Of the module and of the sample; of SPIR-V, which is both in one, the sample is its source,
-    /// which declares what it takes and returns.
+    /// File extensions of the module and of the sample. SPIR-V is both in one file, and its sample
+    /// is the source, which declares what it takes and returns.
     pub(super) fn extensions(self) -> [&'static str; 2] {
         match self {
             Self::Wgsl => ["wgsl", "wgsl"],
@@ -80,7 +80,7 @@ impl Language {
     }
 }
 
-/// What the module says of itself.
+/// The comment at the head of the module.
 pub(super) fn head(file: &str, language: Language, storage: Storage) -> String {
     include_str!("head.txt")
         .replace("{file}", file)
@@ -90,7 +90,7 @@ pub(super) fn head(file: &str, language: Language, storage: Storage) -> String {
         .replace("{layout}", &LAYOUT.to_string())
 }
 
-/// How its tables are bound.
+/// The comment on binding the tables.
 fn binding(language: Language, storage: Storage) -> String {
     let tables = match (storage, language) {
         (Storage::Buffer, _) => {

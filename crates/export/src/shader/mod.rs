@@ -47,7 +47,7 @@ pub(super) fn files(language: Language, storage: Storage, shapes: &[Shape]) -> V
     files
 }
 
-/// The functions for WebGL 2, without what stands at the head of the file.
+/// The functions for WebGL 2, without the comment at the head of the file.
 pub fn for_webgl(shape: &Shape) -> String {
     let storage = Language::GlslEs.storage(Storage::Texture);
     translate::text(&module(&shape.lists(), storage), Language::GlslEs, storage)
@@ -72,7 +72,7 @@ fn module([lobe, uncorrelated, correlated]: &[Vec<Member>; 3], storage: Storage)
     format!("{tables}\n{shape}\n{albedo}\n{FUNCTIONS}")
 }
 
-/// A struct of members, and a function that reads one. A table is the place of its first pair.
+/// A struct of members, and a function that reads it; a table is the index of its first pair.
 fn loader(name: &str, members: &[Member], signature: &str, at: &str) -> String {
     let mut fields = String::new();
     let mut pairs = String::new();

@@ -1,16 +1,15 @@
-//! What runs along a texture, and where its texels lie.
+//! The axes of a texture: quantities, their coordinates, and the texels.
 
 use microfacet_tables::axis::{LogShape, ViewBlend};
 
 /// The most axes of a texture.
 pub(super) const AXES: usize = 3;
 
-/// The smallest σ that a texel is of: below it the albedo depends on cot θ/σ alone, and at 0 on
-/// nothing.
+/// The smallest σ of a texel. Below it the albedo depends on cot θ/σ alone; at 0 it is constant.
 const MIRROR: f64 = 1e-8;
 
-/// Coordinates in the first cell of roughnesses. With three E for γ = 1.6 errs by 1.5e-3 in
-/// 64 × 64 texels, in place of 6.8e-4.
+/// Coordinates in the first cell of roughnesses. With 3, the error of E for γ = 1.6 in 64 × 64
+/// texels is 1.5e-3 instead of 6.8e-4.
 const FIRST_CELL: usize = 16;
 
 /// A material and a view of it.
@@ -24,7 +23,7 @@ pub struct Place {
     pub cos: Option<f64>,
 }
 
-/// What runs along an axis, as a coordinate in [0, 1].
+/// The quantity along an axis, as a coordinate in [0, 1].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Along {
     /// ln(1 + 17/(2γ−3)), as a share of its value at the smallest γ. 0 is γ = ∞.
@@ -43,7 +42,7 @@ pub enum Along {
     View(ViewBlend),
     /// μ.
     Cosine {
-        /// The smallest μ that a texel is of.
+        /// The smallest μ of a texel.
         least: f64,
     },
     /// √μ.
@@ -63,12 +62,12 @@ impl Along {
         matches!(self, Self::View(_) | Self::Cosine { .. } | Self::RootCosine)
     }
 
-    /// Sets what the coordinate c stands for. Of a place, the material must be known before views.
+    /// Sets the quantity at the coordinate c; the material must be set before the view.
     fn set(self, c: f64, place: &mut Place) {
         match self {
             Self::Shape { smallest } => {
                 let last = LogShape::BAKED.coordinate(smallest);
-                // Exact where a user named it.
+                // Exactly the γ that was asked for, without rounding.
                 place.gamma = if c == 1.0 { smallest } else { LogShape::BAKED.quantity(c * last) };
             }
             Self::Roughness { largest } => place.sigma = (largest * c * c).max(MIRROR),
@@ -98,11 +97,10 @@ impl Along {
     }
 }
 
-/// An axis of a texture. A filter takes coordinates before its first texel or behind its last at
-/// these, and is linear between two.
+/// An axis of a texture. A filter clamps to the first and the last texel, and is linear between.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TexelAxis {
-    /// What runs along it.
+    /// The quantity along it.
     pub along: Along,
     /// The coordinate of each texel, ascending.
     pub texels: Vec<f64>,
@@ -138,9 +136,9 @@ impl TexelAxis {
         (before, ((c - a) / (b - a)).clamp(0.0, 1.0))
     }
 
-    /// Coordinates over all of [0, 1], so many in each cell; texels and both ends are among them.
-    /// The first cell of roughnesses has more: there the smallest cosine that counts runs through
-    /// all coordinates of the view.
+    /// `per_cell` coordinates in each cell of [0, 1], with the texels and both ends among them. The
+    /// first cell of roughnesses has more: there the smallest cosine that counts runs through all
+    /// coordinates of the view.
     pub fn dense(&self, per_cell: usize) -> Vec<f64> {
         let mut all = vec![0.0];
         let mut cell = |from: f64, to: f64| {
@@ -161,10 +159,10 @@ impl TexelAxis {
     }
 }
 
-/// The place at one coordinate along each axis; γ is that of a texture without such an axis.
+/// The place at one coordinate along each axis; without an axis of shapes γ is `gamma`.
 pub fn place(axes: &[TexelAxis], gamma: f64, at: &[f64]) -> Place {
     let mut place = Place { gamma, sigma: f64::NAN, cos: None };
-    // Views last: they depend on the others, in whatever order a texture has its axes.
+    // Views last, since their coordinate depends on the material; axes may come in any order.
     for views in [false, true] {
         for (axis, &c) in axes.iter().zip(at) {
             if axis.along.is_view() == views {

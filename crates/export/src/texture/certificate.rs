@@ -1,4 +1,4 @@
-//! How far what a filter reads is from the model, at other points than those of the fit.
+//! The errors of what a filter reads against the model, at other points than those of the fit.
 
 use microfacet_baker::progress::Stage;
 use microfacet_core::Masking;
@@ -9,7 +9,7 @@ use super::fit::{Filter, Tap};
 use super::truth::{Channel, Truth, truths};
 use super::{Texture, TextureSpec};
 
-/// Points of a certificate: for each texel, but no fewer and no more than these.
+/// Points of a certificate for each texel, and the fewest and the most of them.
 const PER_TEXEL: usize = 12;
 const POINTS: [usize; 2] = [20_000, 200_000];
 /// Points in each cell along edges, where only half as many texels are near: of textures with two
@@ -18,42 +18,42 @@ const PER_EDGE: [usize; 2] = [16, 6];
 /// Points for each texel of averages, whose points take longer.
 const PER_AVERAGE: usize = 5;
 const AVERAGES: [usize; 2] = [1_000, 6_000];
-/// Places within each cell of shapes: the texel and the middle, where lines err most to either
-/// side, and, in turn, one between.
+/// Points within each cell along γ: the texel and the middle, where linear interpolation errs most
+/// in either direction, and in turn one of `BETWEEN`.
 const WITHIN: [f64; 2] = [0.0, 0.5];
 const BETWEEN: [f64; 3] = [0.29, 0.76, 0.15];
-/// Steps of an additive recurrence that fills two dimensions evenly, and by the first alone one:
+/// Steps of an additive recurrence that fills two dimensions evenly, and one with the first alone:
 /// 1/ρ and 1/ρ² of the plastic number, ρ³ = ρ + 1.
 const EVEN: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
 
-/// The error of a quantity, over all that is promised.
+/// The error of a quantity over the points that count.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
     /// `e`, `scale` or `bias`.
     pub quantity: &'static str,
-    /// The largest.
+    /// The largest error.
     pub largest: f64,
-    /// Where that is.
+    /// Where the largest error is.
     pub at: Place,
     /// Its root mean square, over the texture's coordinates.
     pub rms: f64,
-    /// The largest, if the filter's shares are multiples of 1/256, as those of much hardware.
+    /// The largest error, if the filter's shares are multiples of 1/256, as those of much hardware.
     pub coarse: f64,
-    /// The largest and the root mean square as shares of what is true, by which shaders may divide;
-    /// without meaning where that may be 0, as the bias.
+    /// The largest and the root mean square of the error relative to the true value, by which
+    /// shaders may divide; meaningless where that value may be 0, as for the bias.
     pub relative: [f64; 2],
 }
 
-/// A place with what is true there.
+/// A place with the model's albedo.
 #[derive(Clone, Copy, Debug)]
 pub struct Known {
-    /// Where it is.
+    /// The material and the view.
     pub place: Place,
     /// The model's albedo.
     pub truth: Truth,
 }
 
-/// Places of one shape or several, under one form of masking, with what is true there.
+/// The model's albedos at places of any shapes, under one form of masking.
 ///
 /// # Errors
 /// [`ParameterError`] for a place outside the domain of the model.
@@ -67,7 +67,7 @@ pub fn known(
     Ok(places.iter().zip(truths).map(|(&place, truth)| Known { place, truth }).collect())
 }
 
-/// Checks of a texture, which serve any values of it.
+/// The points at which a texture is checked, for any values of its texels.
 #[derive(Clone, Debug)]
 pub struct Checks {
     filter: Filter,
@@ -75,13 +75,12 @@ pub struct Checks {
 }
 
 impl Deviation {
-    /// The largest as a bound to rely on: the next number of two digits, since a larger error may
-    /// lie between the points.
+    /// The largest error rounded up to two digits, since a larger one may lie between the points.
     pub fn stated(&self) -> f64 {
         rounded_up(self.largest)
     }
 
-    /// The same of the largest by a filter in steps of 1/256.
+    /// As [`Self::stated`], for a filter in steps of 1/256.
     pub fn stated_coarse(&self) -> f64 {
         rounded_up(self.coarse)
     }
@@ -98,7 +97,7 @@ fn rounded_up(x: f64) -> f64 {
 }
 
 impl Checks {
-    /// Points throughout what is promised, along its edges and in its corners.
+    /// Points throughout the certified domain, along its edges and in its corners.
     ///
     /// # Errors
     /// [`ParameterError`] for a place outside the domain of the model.
@@ -111,14 +110,13 @@ impl Checks {
         let mut at = Vec::new();
         let shapes = axes.iter().find(|axis| axis.is_of_shapes());
         let slices = shapes.map_or(vec![f64::NAN], slices);
-        // Averages are dense without them.
+        // Averages need no points along edges: theirs are dense enough.
         let longest = axes.iter().map(TexelAxis::len).max().unwrap_or(1);
         let edges =
             if directional { PER_EDGE[usize::from(axes.len() == AXES)] * (longest - 1) } else { 1 };
         for (i, &slice) in slices.iter().enumerate() {
             let share = count / slices.len();
             at.extend((0..share).map(|j| even(axes, slice, i * share + j)));
-            // Edges, and their ends.
             for edge in 0..=edges {
                 let along = edge as f64 / edges as f64;
                 at.extend((0..4).map(|corner| edge_point(axes, slice, along, corner)));
@@ -138,7 +136,7 @@ impl Checks {
         Ok(Self { filter, points: known.into_iter().zip(taps).collect() })
     }
 
-    /// Checks at places that are known already.
+    /// Checks at places whose albedos are known.
     pub fn at(spec: &TextureSpec, known: &[Known]) -> Self {
         let filter = Filter::new(&spec.axes);
         let tap = |known: &Known| filter.tap(&spec.axes, &coordinates(&spec.axes, &known.place));
@@ -179,7 +177,7 @@ impl Checks {
     }
 }
 
-/// What is read of a quantity by a reader of channels, and what is true.
+/// From a function that reads a channel: the value of a quantity, and its true value.
 type Reading = Box<dyn Fn(&dyn Fn(usize) -> f64, Truth) -> (f64, f64)>;
 
 /// The quantities that channels hold, as a shader forms them.
@@ -188,7 +186,7 @@ fn quantities(channels: &[Channel]) -> Vec<(&'static str, Reading)> {
     for (i, &channel) in channels.iter().enumerate() {
         match channel {
             Channel::Empty | Channel::Excess => {}
-            // As far off as E.
+            // The error of 1 − E is that of E.
             Channel::Lost => all.push(("e", Box::new(move |read, t| (1.0 - read(i), t.e)))),
             _ => all.push((channel.name(), Box::new(move |read, t| (read(i), channel.of(t))))),
         }
@@ -208,7 +206,7 @@ fn quantities(channels: &[Channel]) -> Vec<(&'static str, Reading)> {
     all
 }
 
-/// Coordinates of shapes that are looked at: three of each cell, and the end.
+/// Coordinates of the shapes that are checked: three in each cell, and the end.
 fn slices(axis: &TexelAxis) -> Vec<f64> {
     let cells = axis.texels.windows(2).zip(BETWEEN.into_iter().cycle());
     let cell = |(pair, between): (&[f64], f64)| {
@@ -228,7 +226,7 @@ fn even(axes: &[TexelAxis], slice: f64, i: usize) -> [f64; AXES] {
     array(axes.iter().map(&mut along))
 }
 
-/// A point of an edge: all axes but shapes at an end, and one of them anywhere.
+/// A point of an edge: of the two axes other than γ one is at `along`, the other at an end.
 fn edge_point(axes: &[TexelAxis], slice: f64, along: f64, corner: usize) -> [f64; AXES] {
     let mut nth = 0;
     let mut coordinate = |axis: &TexelAxis| {
@@ -236,7 +234,7 @@ fn edge_point(axes: &[TexelAxis], slice: f64, along: f64, corner: usize) -> [f64
             return slice;
         }
         nth += 1;
-        // Of two axes the one runs and the other is at an end, then the other way around.
+        // Corners 0 and 1 run along the first axis, corners 2 and 3 along the second.
         if nth - 1 == corner / 2 { along } else { (corner % 2) as f64 }
     };
     array(axes.iter().map(&mut coordinate))

@@ -2,9 +2,9 @@
 //! line: one shape γ, or a range of them as a volume, and the averages over all views.
 //!
 //! The coordinate of the view follows the roughness, so that E is smooth where it changes within
-//! the roughness of the horizon. The values are not those at the texels, but those for which what
-//! the filter reads between them is closest to the model. The same mechanism writes the textures
-//! that engines read today, see [`engine`].
+//! the roughness of the horizon. Up to [`MOST_FITTED`] texels the values are not the model's: they
+//! are fitted so that what the filter reads between texels is closest to the model. [`engine`]
+//! writes the textures that engines read today.
 
 mod axis;
 mod certificate;
@@ -41,8 +41,8 @@ pub const SIZES: [usize; 2] = [4, 4096];
 /// The most texels of a texture.
 pub const MOST_TEXELS: usize = 1 << 24;
 /// Textures of more texels than this hold the values at the texels. Errors fall with the square of
-/// their number along an axis, from 5.2e-3 for γ = ∞ in 32 × 32 texels, and a fit, which takes
-/// memory by the point, gains no more than half.
+/// their number along an axis, from 5.2e-3 for γ = ∞ in 32 × 32 texels, and a fit, whose memory
+/// grows with its points, gains no more than half.
 pub const MOST_FITTED: usize = 1 << 18;
 /// The smallest cosine for which a certificate holds.
 pub const LEAST_COS: f64 = 1e-4;
@@ -54,8 +54,8 @@ const MOST_GAMMA_MIN: f64 = 1e4;
 const PER_CELL: [usize; 2] = [3, 2];
 /// Points of a fit within each cell of averages.
 const PER_AVERAGE_CELL: usize = 3;
-/// Seconds that the albedo of one place takes on one processor, and an average; only their
-/// proportion matters, to the progress that is shown.
+/// Seconds that one albedo, and one average, take on one processor; only their ratio matters, for
+/// the progress that is shown.
 const SECONDS: [f64; 2] = [1.3e-4, 4e-3];
 
 /// The shapes of a texture.
@@ -75,7 +75,7 @@ pub enum Channels {
     E,
     /// 1 − E.
     OneMinusE,
-    /// E, and bias − E (1−μ)⁵: what scale and bias follow from.
+    /// E, and bias − E (1−μ)⁵, from which scale and bias follow.
     ScaleBias,
 }
 
@@ -96,7 +96,7 @@ pub struct TextureSpec {
     pub name: String,
     /// γ, where no axis is of shapes.
     pub gamma: f64,
-    /// The axes, slowest first. Without a view the texture is of averages.
+    /// The axes, slowest first. Without an axis of views the texture is of averages.
     pub axes: Vec<TexelAxis>,
     /// The form of masking.
     pub masking: Masking,
@@ -117,11 +117,11 @@ fn kappa(shapes: Shapes, sigma_max: f64) -> [f64; 2] {
 }
 
 impl TextureSpec {
-    /// The texture of E, by a name, and that of its averages, by the same with `_average`; `size`
-    /// texels along γ (if there is a range), s and t.
+    /// The texture of E, named `name`, and that of its averages, with `_average` after the name;
+    /// `size` texels along γ (if there is a range), s and t.
     ///
     /// # Panics
-    /// If `size` has not one number an axis, each of at least two.
+    /// Unless `size` has one number for each axis, of at least two.
     pub fn of_shapes(
         name: &str,
         shapes: Shapes,
@@ -161,12 +161,12 @@ impl TextureSpec {
         Self { name: name.into(), axes, ..self.clone() }
     }
 
-    /// Whether it has a view; else it is of averages.
+    /// Whether it has an axis of views; else it is of averages.
     pub fn is_directional(&self) -> bool {
         self.axes.iter().any(|axis| axis.along.is_view())
     }
 
-    /// An estimate of the seconds that it takes on one processor, in proportion.
+    /// An estimate of the seconds that it takes on one processor; only ratios are meaningful.
     pub fn seconds(&self) -> f64 {
         let texels: f64 = self.axes.iter().map(|axis| axis.len() as f64).product();
         let per_cell = self.per_cell();
@@ -185,7 +185,7 @@ impl TextureSpec {
     /// Values at the texels, or fitted ones.
     ///
     /// # Errors
-    /// [`ParameterError`] for a place outside the domain of the model.
+    /// [`ParameterError`] for a [`Place`] outside the domain of the model.
     pub fn make(&self, stage: &Stage) -> Result<Texture, ParameterError> {
         let planes: Vec<Vec<f32>> = if self.fitted {
             let points = self.points();
@@ -225,8 +225,8 @@ impl TextureSpec {
         Grid(self.axes.iter().map(along).collect())
     }
 
-    /// Points to fit to, with their coordinates: over all of the texture, and of views also the
-    /// smallest cosine that counts, which lies between others.
+    /// Points to fit to, with their coordinates: a grid over the whole texture, and for views also
+    /// the smallest cosine that counts, which is not on the grid.
     fn points(&self) -> Vec<([f64; AXES], Place)> {
         let dense = |axis: &TexelAxis| axis.dense(self.per_cell());
         let grid = self.grid(dense);
@@ -265,11 +265,11 @@ impl Grid {
 /// A texture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
-    /// What it is.
+    /// The specification that it was made from.
     pub spec: TextureSpec,
     /// Its values, the channels of a texel together, the last axis fastest.
     pub values: Vec<f32>,
-    /// Whether they are stored in 16 bits, which hold them without loss then.
+    /// Whether the values are stored in 16 bits, to which they are rounded already.
     pub half: bool,
 }
 
@@ -294,10 +294,10 @@ impl Texture {
     }
 }
 
-/// Why a texture cannot be made.
+/// Checks the shapes, the largest roughness and the size of a texture.
 ///
 /// # Errors
-/// The value, what is allowed, and what to do.
+/// A message with the value, what is allowed, and what to do.
 pub fn check(shapes: Shapes, sigma_max: f64, size: &[usize]) -> Result<(), String> {
     let (gamma, axes, form) = match shapes {
         Shapes::One(gamma) => (gamma, 2, "SxT, as 32x32"),

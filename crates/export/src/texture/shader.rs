@@ -19,8 +19,9 @@ pub struct Lines {
     pub wgsl: String,
 }
 
-/// Where a texture whose texels reach the ends of its coordinates is read, as an expression of
-/// `gamma`, `sigma` and `mu`; the parts of a vector are around its number of axes.
+/// The expression of `gamma`, `sigma` and `mu` at which a texture is read whose texels reach the
+/// ends of its coordinates; `vector` and `suffix` are the name of a vector type before and after
+/// its number of components.
 pub fn coordinates(axes: &[TexelAxis], gamma: f64, [vector, suffix]: [&str; 2]) -> String {
     // The fastest axis is the first coordinate.
     let axes: Vec<&TexelAxis> = axes.iter().rev().collect();
@@ -48,7 +49,7 @@ pub fn coordinates(axes: &[TexelAxis], gamma: f64, [vector, suffix]: [&str; 2]) 
 /// The lines for a texture whose texels reach the ends of its coordinates.
 pub fn shader_lines(spec: &TextureSpec) -> Lines {
     let read = |vector: &str, suffix: &str| coordinates(&spec.axes, spec.gamma, [vector, suffix]);
-    // With a word behind it no name is one of a language or of a variable here.
+    // The suffix keeps the name from being a keyword or a variable of the line.
     let texture = format!("{}_texture", spec.name);
     let (mirror, of) = if spec.is_directional() {
         ("pow(max(0.0, 1.0 - mu), 5.0)", "")

@@ -1,4 +1,4 @@
-//! What the texels are of: directional albedos by quadrature, and their averages.
+//! The model's values: directional albedos by quadrature, and their averages.
 
 use std::collections::{HashMap, HashSet};
 
@@ -29,7 +29,7 @@ pub enum Channel {
     Bias,
     /// bias − E (1−μ)⁵, which vanishes with σ; of averages, bias − E/21.
     Excess,
-    /// Something else of an engine, which is no albedo of this family: 0.
+    /// A channel of an engine that is no albedo of this family: 0.
     Empty,
 }
 
@@ -46,7 +46,7 @@ impl Channel {
         }
     }
 
-    /// Where its values lie. What is fitted may come out beyond, and would make a loss negative.
+    /// The range of its values. A fit may exceed it, which would make a loss negative.
     pub(super) fn range(self) -> [f64; 2] {
         match self {
             Self::Excess => [-1.0, 1.0],
@@ -71,14 +71,14 @@ impl Channel {
 pub struct Truth {
     /// E.
     pub e: f64,
-    /// The part of it that is F90's.
+    /// The component of E with the factor F90.
     pub bias: f64,
-    /// That part of a mirror, (1−μ)⁵; of its average, 1/21.
+    /// The bias of a mirror, (1−μ)⁵; of an average, 1/21.
     pub mirror: f64,
 }
 
-/// The albedos of `count` places of these shapes, each a step of the stage; all of them views, or
-/// all averages. A place is computed where it is used: a large texture has 2²⁴.
+/// The albedos of `count` places with the shapes `gammas`, each a step of the stage; either all
+/// have a view or all are averages. Places are computed when used: a large texture has 2²⁴.
 pub(super) fn truths(
     gammas: impl Iterator<Item = f64>,
     count: usize,

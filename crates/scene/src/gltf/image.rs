@@ -31,14 +31,14 @@ pub(super) struct Images<'a> {
 }
 
 impl Importer<'_> {
-    /// The range of a channel of a texture, which is found once.
+    /// The range of a channel of a texture, computed once.
     pub(super) fn image(&mut self, texture: u64, channel: Channel) -> Interval {
         if let Some(&known) = self.ranges.get(&(texture, channel)) {
             return known;
         }
         let Self { builder, images, place, read, .. } = self;
         let range = images.source(texture).and_then(|source| {
-            // An image may be as large as the document, and of as many textures.
+            // Many textures may share one image as large as the document.
             let read = read.entry((source, channel));
             read.or_insert_with(|| images.range(source, channel, builder)).clone()
         });
@@ -66,8 +66,8 @@ impl<'a> Images<'a> {
         read().map_err(unread)
     }
 
-    /// The range of a channel of an image. An error is to be said of each of its textures, and a
-    /// warning of a file is given here.
+    /// The range of a channel of an image. An error is for the caller to report for each texture; a
+    /// file that cannot be read is warned of here.
     fn range(
         &self,
         source: u64,
@@ -80,7 +80,7 @@ impl<'a> Images<'a> {
                 Ok(builder.image(&self.file(&uri), channel, Encoding::Linear, self.place))
             }
             uri => {
-                // No file has this path.
+                // No file has this path, which is inside the document's own file.
                 let key = self.place.file.join(source.to_string());
                 let read = |left: &Budget| self.bytes(&image, uri, left);
                 builder.textures.range(&key, channel, Encoding::Linear, read)
@@ -88,7 +88,6 @@ impl<'a> Images<'a> {
         }
     }
 
-    /// An entry of a list by its number.
     fn entry(&self, list: &[&'a RawValue], index: u64, what: &str) -> Result<Object<'a>> {
         Object::new(self.place, String::new(), self.text(list, index, what)?)
     }
@@ -105,7 +104,7 @@ impl<'a> Images<'a> {
             texture::charge(left, uri.len() as u64)?;
             return data_uri(&uri);
         }
-        // Images may share a view and a buffer as large as the document.
+        // Images may share a buffer as large as the document, so every use is counted.
         let charged = |list: &[&'a RawValue], index: u64, what: &str| {
             let text = self.text(list, index, what).map_err(said)?;
             texture::charge(left, text.get().len() as u64)?;

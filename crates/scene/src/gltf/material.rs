@@ -18,7 +18,7 @@ const METALLIC: &str = "pbrMetallicRoughness";
 const SPECULAR: &str = "KHR_materials_specular";
 
 impl<'a> Importer<'a> {
-    /// Adds the lobes of a material; what is impossible in one of them costs that one alone.
+    /// Adds the lobes of a material; an impossible value in one lobe leaves out that lobe alone.
     pub(super) fn lobes(&mut self, name: &str, material: &Object<'a>, used: bool) -> Result<()> {
         let place = self.place;
         let extensions = material.object_or_empty("extensions")?;
@@ -32,7 +32,7 @@ impl<'a> Importer<'a> {
                 let reason = "a dielectric whose specularFactor is 0: its facets reflect nothing";
                 self.builder.ignore(name, kind, place, reason)?;
             }
-            // What cannot be read is said where the lobe is.
+            // `base` reports what cannot be read.
             Ok(false) | Err(_) => {
                 let read = self.base(name, material, &extensions, used);
                 self.builder.degrade(name, kind, place, read)?;
@@ -50,7 +50,6 @@ impl<'a> Importer<'a> {
         Ok(())
     }
 
-    /// Adds the main lobe.
     fn base(
         &mut self,
         name: &str,
@@ -84,7 +83,7 @@ impl<'a> Importer<'a> {
             };
             Roughness::anisotropic(along, alpha)
         };
-        // The place is the whole file.
+        // The place is the whole file, so the message names the material.
         let fresnel = fresnel(material, extensions)
             .map_err(|why| self.place.invalid(format!("material \"{name}\": {}", why.kind)));
         let fresnel = self.builder.without_fresnel(fresnel, None)?;
@@ -121,7 +120,7 @@ impl<'a> Importer<'a> {
     }
 }
 
-/// Whether it is a dielectric without reflection, by a `specularFactor` of 0
+/// Whether the material is a dielectric without reflection, by a `specularFactor` of 0
 /// (`KHR_materials_specular`), and without transmission, which passes through the same facets.
 fn reflects_nothing(material: &Object<'_>, extensions: &Object<'_>) -> Result<bool> {
     let others = [GLOSSINESS, "KHR_materials_transmission"];
@@ -130,8 +129,7 @@ fn reflects_nothing(material: &Object<'_>, extensions: &Object<'_>) -> Result<bo
         && !others.iter().any(|&other| extensions.members.contains_key(other)))
 }
 
-/// Schlick's reflectance with F90 = 1 where that is what the material has, with the same F0
-/// everywhere.
+/// Schlick's reflectance with F90 = 1; `None` if the Fresnel term is another or F0 varies.
 fn fresnel(material: &Object<'_>, extensions: &Object<'_>) -> Result<Option<Reflectance>> {
     let has_texture = |object: &Object<'_>, names: [&str; 2]| {
         names.iter().any(|&name| object.members.contains_key(name))
@@ -149,7 +147,7 @@ fn fresnel(material: &Object<'_>, extensions: &Object<'_>) -> Result<Option<Refl
     let pbr = material.object_or_empty(METALLIC)?;
     let metallic = pbr.unit("metallicFactor", 1.0)?;
     let base = match pbr.numbers("baseColorFactor", [1.0; 4])? {
-        // A dielectric's F0 does not depend on it.
+        // A dielectric's F0 does not depend on the base colour.
         _ if metallic == 0.0 => [0.0; 3],
         [r, g, b, _] => pbr.colour("baseColorFactor", [r, g, b])?,
     };
@@ -167,7 +165,7 @@ fn fresnel(material: &Object<'_>, extensions: &Object<'_>) -> Result<Option<Refl
     // An index of 0 asks for total reflection (KHR_materials_ior); the formula gives 1 there.
     let amplitude = (index - 1.0) / (index + 1.0);
     let specular = extensions.object_or_empty(SPECULAR)?;
-    // F90 is the factor: at 1 alone the form is Schlick's with F90 = 1.
+    // `specularFactor` is F90.
     if specular.unit("specularFactor", 1.0)? != 1.0
         || has_texture(&specular, ["specularTexture", "specularColorTexture"])
     {

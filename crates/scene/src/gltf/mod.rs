@@ -20,13 +20,13 @@
 //!   `iridescenceFactor` of `KHR_materials_iridescence` is not 0. A dielectric whose
 //!   `specularFactor` is 0 reflects nothing; unless it transmits, it has no lobe.
 //! - `KHR_materials_sheen` has a distribution of its own; `KHR_materials_unlit` has no lobe.
-//! - A value that is out of its range or of a wrong kind costs its lobe, its Fresnel term, its
-//!   texture or its mesh alone. A member that is null is absent. Indices may be written as `1.0`.
+//! - A value that is out of its range or of a wrong kind leaves out only its lobe, its Fresnel
+//!   term, its texture or its mesh. A member that is null is absent. Indices may be written as
+//!   `1.0`.
 //! - `extensionsRequired` lists what a reader has to know (3.12): a material with one of those that
-//!   is not known here is not understood. Others of a material are warned of, unless they leave its
-//!   lobes as they are, and so is a member that glTF does not have. `extras` may hold anything.
-//! - The form of G2 is left to the renderer: appendix B and the anisotropy extension show one form
-//!   each.
+//!   is not known here is not understood. Other unknown extensions give a warning, unless they
+//!   leave the lobes as they are, and so do unknown members outside `extras`.
+//! - G2 is left to the renderer: appendix B and the anisotropy extension show one expression each.
 //!
 //! [spec]: https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html
 
@@ -57,11 +57,10 @@ use crate::texture::Channel;
 const VERSION_1: &str = "glTF 1.0, and only version 2.0 is read; convert it: \
                          `gltf-pipeline -i old.gltf -o new.gltf` (CesiumGS)";
 
-/// Reads a glTF 2.0 scene.
 pub(super) fn load(path: &Path) -> Result<Scene> {
     let place = Place::file(path);
     let (json, chunk) = read(path, &place)?;
-    // Programs write names in encodings of their own, and no name decides what is read.
+    // Some programs write names in other encodings; no name decides what is read.
     let json = String::from_utf8_lossy(input::unmarked(&json));
     let document: &RawValue = serde_json::from_str(&json).map_err(|error| {
         Lines::new(path, json.as_bytes())
@@ -70,7 +69,7 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
     })?;
     let document = Object::new(&place, String::new(), document)?;
     let asset = document.object_or_empty("asset")?;
-    // Drafts of version 1 have a number in the place of a text, or nothing.
+    // Drafts of version 1 have a number instead of a text, or nothing.
     let version = asset.members.get("version").map_or("1", |text| text.get().trim_matches('"'));
     match version.split('.').next() {
         Some("2") => {}
@@ -153,11 +152,10 @@ struct Importer<'a> {
     images: Images<'a>,
     /// Ranges of the textures that were read.
     ranges: HashMap<(u64, Channel), Interval>,
-    /// Those of the images that were, or why there is none.
+    /// Ranges of the images that were read, or why there is none.
     read: HashMap<(u64, Channel), Result<Interval, String>>,
 }
 
-/// What meshes use.
 #[derive(Default)]
 struct Used {
     materials: BTreeSet<u64>,
@@ -172,7 +170,7 @@ impl<'a> Importer<'a> {
         let materials = document.list("materials")?;
         let used = self.used(&document.list("meshes")?, materials.len() as u64);
         let required = document.list("extensionsRequired")?;
-        // What is no name requires nothing.
+        // Entries that are no text are ignored.
         let required = required.iter().filter_map(|text| serde_json::from_str(text.get()).ok());
         let required: BTreeSet<String> = required.collect();
         for (i, text) in materials.into_iter().enumerate() {

@@ -5,8 +5,8 @@ use super::object::Object;
 use crate::builder::{Row, names_of};
 use crate::limits::Budget;
 
-/// Members of a material (under no name) and of objects in it: those that are read, and after them
-/// those that leave every lobe as it is.
+/// Members of a material (under no name) and of objects in it: those that are read, and then those
+/// that leave every lobe as it is.
 const NAMES: [Row; 9] = [
     (
         "",
@@ -52,13 +52,12 @@ const NAMES: [Row; 9] = [
 /// What the names of Khronos' extensions of materials begin with.
 const KHRONOS: &str = "KHR_materials_";
 
-/// The extensions of materials that are known.
 pub(super) fn extensions() -> Vec<&'static str> {
     names_of(&NAMES, "extensions")
 }
 
 impl Importer<'_> {
-    /// Warns of members that are not known in an object of a material, as many as are `left`.
+    /// Warns of unknown members in an object of a material, of at most as many as are `left`.
     pub(super) fn check_names(
         &mut self,
         material: &str,
@@ -71,14 +70,14 @@ impl Importer<'_> {
         let is_free = |name: &str| name == "extras" || name == "extensions" && !owner.is_empty();
         for name in object.members.keys().filter(|name| !is_free(name) && !known.is_empty()) {
             if known.contains(&&name[..]) {
-                // What is no object is said where it is read.
+                // A member that is no object is reported where it is read.
                 if let Ok(Some(inner)) = object.object(name) {
                     self.check_names(material, name, &inner, left);
                 }
             } else if !left.take(1) {
                 return;
             } else if owner == "extensions" {
-                // The beginning would make all of them alike.
+                // The common prefix would make all names similar.
                 let stem = |name| str::strip_prefix(name, KHRONOS).unwrap_or(name);
                 let hint = self.builder.did_you_mean(stem(name), known.iter().map(|one| stem(one)));
                 let extension = format!("the extension {name} of material \"{material}\"");

@@ -1,5 +1,5 @@
-//! Objects of the document, of which each member is read by itself, so that an error in one costs
-//! no more than what it is a part of.
+//! Objects of a glTF document. Each member is read separately, so that an error in one affects only
+//! the object that contains it.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -15,12 +15,12 @@ use crate::Result;
 use crate::builder::shortened;
 use crate::limits;
 
-/// An object, whose members are kept as their texts, which are not copied.
+/// An object, whose members are slices of the document's text.
 pub(super) struct Object<'a> {
     place: &'a Place,
     /// The members that lead to it, each with a colon.
     path: String,
-    /// Without those that are null, which are absent.
+    /// Without members that are null, which count as absent.
     pub(super) members: BTreeMap<String, &'a RawValue>,
 }
 
@@ -35,7 +35,6 @@ impl<'a> Object<'a> {
         Ok(object)
     }
 
-    /// The error for something in it.
     pub(super) fn invalid(&self, why: impl AsRef<str>) -> SceneError {
         self.place.invalid(format!("{}{}", self.path, why.as_ref()))
     }
@@ -86,7 +85,7 @@ impl<'a> Object<'a> {
         Ok(list)
     }
 
-    /// The objects in a list, each of which takes far more memory than the text "{}".
+    /// The objects in a list, read one at a time: each takes far more memory than the text "{}".
     pub(super) fn objects(&self, name: &str) -> Result<impl Iterator<Item = Result<Self>>> {
         let (place, path) = (self.place, format!("{}{name}: ", self.path));
         Ok(self.list(name)?.into_iter().map(move |text| Self::new(place, path.clone(), text)))
@@ -136,7 +135,7 @@ impl<'a> Object<'a> {
 
     /// A whole number, which some programs write as `1.0`.
     pub(super) fn index(&self, name: &str) -> Result<Option<u64>> {
-        // Above 2^53 not every whole number is one of these.
+        // Above 2^53 not every whole number is an `f64`.
         const MOST: f64 = (1u64 << 53) as f64;
         let Some(text) = self.members.get(name) else { return Ok(None) };
         match f64::deserialize(*text) {
@@ -150,24 +149,23 @@ impl<'a> Object<'a> {
         }
     }
 
-    /// The same, of a member that must be there.
+    /// As [`Self::index`]; an absent member is an error.
     pub(super) fn required_index(&self, name: &str) -> Result<u64> {
         self.index(name)?.ok_or_else(|| self.invalid(format!("{name} is missing")))
     }
 }
 
-/// What an error of the parser says, without the place at the end: it counts from where the value
-/// begins.
+/// The message of a parser error without line and column, which count from the value's start.
 pub(super) fn message(error: &serde_json::Error) -> String {
     let text = error.to_string();
     let text = text.rsplit_once(" at line ").map_or(&text[..], |(message, _)| message);
-    // What JSON has under other names than Rust.
+    // Rust's names of types become those of JSON.
     let text = text.replace("invalid type: map", "invalid type: object");
-    // It may quote a whole image.
+    // The message may quote a whole image.
     shortened(&text.replace("expected f64", "expected a number")).into_owned()
 }
 
-/// Collects the members of an object: one more than may be, of very many.
+/// Collects the members of an object, at most one more than the limit.
 struct Members<'a>(BTreeMap<String, &'a RawValue>);
 
 impl<'a> Visitor<'a> for Members<'a> {
@@ -192,7 +190,7 @@ impl<'a> Visitor<'a> for Members<'a> {
     }
 }
 
-/// Collects the elements of a list, likewise.
+/// Collects the elements of a list, at most one more than the limit.
 struct Elements<'a>(Vec<&'a RawValue>);
 
 impl<'a> Visitor<'a> for Elements<'a> {

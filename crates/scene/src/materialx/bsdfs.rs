@@ -17,7 +17,7 @@ use crate::xml::Element;
 pub(super) const DIFFUSE: &str = "diffuse, without microfacets";
 const FABRIC: &str = "a fabric's distribution, not a Student-t one";
 
-/// The same lobe is looked for among so many before it, so that time stays linear.
+/// An equal lobe is looked for among this many lobes before it, so that time stays linear.
 const MAX_COMPARED: usize = 64;
 
 impl<'a> Reader<'a> {
@@ -167,7 +167,7 @@ impl<'a> Reader<'a> {
         Ok(Roughness::anisotropic(x.clamp(LEAST_ALPHA, 1.0), y.clamp(LEAST_ALPHA, 1.0)))
     }
 
-    /// Whether both numbers of a pair are the same at every point: they come from one number.
+    /// Whether both components of a pair are equal at every point, since they come from one number.
     fn is_grey(&self, input: &'a Element, scope: Scope<'a>) -> Result<bool> {
         let mut end = At::new(input, scope);
         for _ in 0..16 {

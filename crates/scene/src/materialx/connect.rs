@@ -47,7 +47,8 @@ impl<'a> Reader<'a> {
                 _ => Ok(Some(At::new(node, scope))),
             };
         }
-        // An output alone is one of the document (`PortElement::getConnectedOutput`).
+        // An output without a node or a graph is one of the document
+        // (`PortElement::getConnectedOutput`).
         match input.attribute("output") {
             Some(name) if !name.is_empty() => self.output(input, self.root).map(Some),
             _ => Ok(None),
@@ -129,7 +130,6 @@ impl<'a> Reader<'a> {
         Ok(Some(scope))
     }
 
-    /// Counts a node that is followed.
     pub(super) fn count(&self, node: &Element) -> Result<()> {
         if self.left.take(1) {
             return Ok(());
@@ -149,7 +149,7 @@ impl<'a> Reader<'a> {
         let Some(scope) = self.enter(at)? else { return Ok(None) };
         let name = output.unwrap_or_default();
         let found = self.index.output(scope.graph, name);
-        // Graphs of one output may name it otherwise than their definition.
+        // A graph with one output may give it another name than its definition does.
         let found = found.or_else(|| self.index.output(scope.graph, ""));
         Ok(found.map(|output| At::new(output, scope)))
     }
@@ -198,10 +198,10 @@ pub(super) fn selected(input: &Element, channel: Channel) -> Channel {
     taken.and_then(|names| channel_named(names, channel)).unwrap_or(channel)
 }
 
-/// The channel that stands at the place of `channel` in names such as "r", "xyz" or "outx".
+/// The channel at the index of `channel` in names such as "r", "xyz" or "outx".
 pub(super) fn channel_named(names: &str, channel: Channel) -> Option<Channel> {
     let letters = names.strip_prefix("out").unwrap_or(names);
-    // A longer word is the name of an output with several channels, or nonsense.
+    // A longer word is the name of an output with several channels, or is unknown.
     if letters.len() > 4 {
         return None;
     }
@@ -219,7 +219,7 @@ pub(super) fn channel_named(names: &str, channel: Channel) -> Option<Channel> {
     all.get(place(channel)).or(all.last()).copied()
 }
 
-/// The place of a channel in a colour or a vector, or of the first that it is made of.
+/// The index of a channel in a colour or a vector; 0 for a channel computed from several.
 pub(super) fn place(channel: Channel) -> usize {
     match channel {
         Channel::Red | Channel::Luminance | Channel::AlphaOrMean => 0,

@@ -110,7 +110,7 @@ const INPUTS: [Row; 45] = [
     ("UsdUVTexture", "file st wrapS wrapT fallback scale bias"),
 ];
 
-/// Longer chains of definitions that inherit from each other are a circle.
+/// Longer chains of definitions that inherit from each other count as a circle.
 const MAX_HEIRS: usize = 16;
 /// Names of a definition's inputs that are suggested.
 const MAX_SUGGESTED: usize = 256;

@@ -27,7 +27,7 @@ impl<'a> Reader<'a> {
         range
     }
 
-    /// As [`Self::value`], inside of another. Every cycle of connections passes through an input.
+    /// As [`Self::value`], for its recursion. Every circle of connections passes an input.
     fn connected(
         &mut self,
         input: &'a Element,
@@ -73,7 +73,7 @@ impl<'a> Reader<'a> {
                 if base.min < 0.0 || base.min == 0.0 && exponent.min <= 0.0 {
                     return Ok(self.unknown(node, "takes a power of a value that is not positive"));
                 }
-                // Rises or falls in each argument, so that the extremes are at the ends.
+                // The power is monotonic in each argument, so that the extremes are at the ends.
                 base.map_bilinear(exponent, libm::pow)
             }
             "sqrt" => input("in", 0.0)?.map_rising(|x| x.max(0.0).sqrt()),
@@ -114,7 +114,7 @@ impl<'a> Reader<'a> {
                 match self.index.given(node, "doclamp").map(|input| input.attribute("value")) {
                     None | Some(Some("false")) => value,
                     Some(Some("true")) => clamped(value, low, high),
-                    // A connection may say either.
+                    // A connected value may be true or false.
                     Some(_) => value.union(clamped(value, low, high)),
                 }
             }
@@ -126,7 +126,7 @@ impl<'a> Reader<'a> {
                 let top = input("valuetl", 0.0)?.union(input("valuetr", 0.0)?);
                 top.union(input("valuebl", 0.0)?).union(input("valuebr", 0.0)?)
             }
-            // An average, with any weights.
+            // A weighted average; any weights are allowed for.
             "luminance" => {
                 let [r, g, b] = RGB.map(|channel| of("in", 0.0, channel));
                 r?.union(g?).union(b?)
@@ -167,7 +167,7 @@ impl<'a> Reader<'a> {
             "artistic_ior" => {
                 let (r, edge) = (input("reflectivity", 0.944)?, input("edge_color", 0.998)?);
                 let of = if output == Some("extinction") { 1 } else { 0 };
-                // Of a range only its ends, since an index of refraction is read if it is constant.
+                // Only the ends of a range: an index of refraction is read if it is constant.
                 let [a, b] = [(r.min, edge.min), (r.max, edge.max)];
                 Interval::point(artistic(a.0, a.1)[of])
                     .union(Interval::point(artistic(b.0, b.1)[of]))
@@ -199,7 +199,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Each value moved to the lower limit, and then to the higher one, as shaders do.
+/// Clamps to the lower limit first, and then to the upper one, as shaders do.
 fn clamped(value: Interval, low: Interval, high: Interval) -> Interval {
     Interval {
         min: value.min.max(low.min).min(high.min),

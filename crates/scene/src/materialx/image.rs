@@ -45,7 +45,7 @@ impl<'a> Reader<'a> {
     /// The text that an input holds or is given, with the element that has it.
     fn text(&self, input: &'a Element, at: At<'a>) -> Option<(&'a Element, &'a str)> {
         let mut end = At::new(input, at.scope);
-        // A file name comes through the interfaces of graphs inside each other.
+        // A file name may pass through the interfaces of nested graphs.
         for _ in 0..8 {
             match self.target(end.node, end.scope).ok()? {
                 None => return Some((end.node, end.node.attribute("value")?)),

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::xml::Element;
 
-/// The root attributes of a document that hold for all it brings, by its file.
+/// The attributes of each document's root, which hold for its whole content, by file.
 pub(super) type Headers = HashMap<Arc<Path>, Vec<(String, String)>>;
 
 /// A node with the scope in which the names of its connections are looked up.
@@ -22,7 +22,7 @@ impl<'a> At<'a> {
     }
 }
 
-/// A graph, or the document, and the use of the graph that is meant.
+/// A graph or the document, and which of the graph's instances is meant.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct Scope<'a> {
     pub(super) graph: &'a Element,
@@ -37,14 +37,14 @@ impl<'a> Scope<'a> {
     }
 }
 
-/// Children by their element and their attribute "name"; the first of a name.
+/// Elements of a document by their names; the first of a name counts.
 pub(super) struct Index<'a> {
     root: &'a Element,
     headers: &'a Headers,
     children: HashMap<(&'a Element, &'a str), &'a Element>,
-    /// As `children`, of the outputs alone; the first of all is also under the empty name.
+    /// As `children`, but outputs only; the first output is also under the empty name.
     outputs: HashMap<(&'a Element, &'a str), &'a Element>,
-    /// The first `nodedef` of a node and of the type of an output; for any type, "".
+    /// The first `nodedef` by node and by type of output; "" stands for any type.
     definitions: HashMap<(&'a str, &'a str), &'a Element>,
     /// The graphs that implement definitions, by the name of the `nodedef`.
     implementations: HashMap<&'a str, &'a Element>,
@@ -146,7 +146,7 @@ impl<'a> Index<'a> {
     /// An attribute that holds for an element and all inside it: that of the innermost of
     /// `elements` that has it, or else that of the root of its document.
     pub(super) fn inherited(&self, elements: &[&'a Element], name: &str) -> Option<&'a str> {
-        // The root is that of the document which includes the others.
+        // The root is that of the including document; the others' attributes are in `headers`.
         let mut inside = elements.iter().filter(|&&element| element != self.root);
         let own = inside.find_map(|element| element.attribute(name));
         own.or_else(|| {

@@ -28,7 +28,7 @@ impl<'a> Reader<'a> {
         Ok(self.moved(at, name, value))
     }
 
-    /// A value moved into [0, 1], with a warning if that is another.
+    /// Clamps a value to [0, 1], with a warning if that changes it.
     pub(super) fn moved(&mut self, at: At<'a>, name: &str, value: Interval) -> Interval {
         if value.min < 0.0 || value.max > 1.0 {
             let worst = if value.min < 0.0 { value.min } else { value.max };
@@ -84,7 +84,7 @@ impl<'a> Reader<'a> {
         else {
             return Ok(None);
         };
-        // The index as written, to the last digit.
+        // The index as written, without rounding.
         if weight.min == 1.0 {
             return Ok(fresnel);
         }
@@ -144,8 +144,7 @@ impl<'a> Reader<'a> {
         self.builder.without_fresnel(fresnel.map(Some), None)
     }
 
-    /// Whether a thin film is on the lobe, which has no Fresnel term then, nor where that cannot be
-    /// known.
+    /// Whether a thin film lies, or may lie, on the lobe: its Fresnel term is then left open.
     pub(super) fn film(&mut self, at: At<'a>, amount: &'static str) -> Result<bool> {
         let film = self.greatest(at, amount, 0.0).map(|amount| amount > 0.0);
         self.builder.without_fresnel(film, true)

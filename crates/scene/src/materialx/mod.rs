@@ -22,8 +22,8 @@
 //! - A Fresnel term is stated if the inputs are constant and nothing is mixed: metal is all or
 //!   nothing, there is no thin film, and in OpenPBR no coat, which the index is relative to. F0 is
 //!   Schlick's; `artistic_ior` is Gulbrandsen's (JCGT 3(4), 2014).
-//! - In `open_pbr_surface` a `specular_weight` w other than 1 gives the dielectric the index of
-//!   which F0 is w times as much; the metal's lobe has the weight w, and ends at 0.
+//! - In `open_pbr_surface` a `specular_weight` w other than 1 gives the dielectric the index whose
+//!   F0 is w times as large; the metal's lobe has the weight w, and is left out at w = 0.
 //! - The coat, if its weight is not 0, is a lobe of its own. It roughens the base: in
 //!   `standard_surface` to r + (1 − r) `coat` · `coat_affect_roughness` · `coat_roughness`, in
 //!   `open_pbr_surface` to (min(1, r⁴ + 2 `coat_roughness`⁴))^¼, mixed in by the coat's weight.
@@ -32,11 +32,11 @@
 //!   node of MaterialX is not.
 //! - `transmission_extra_roughness` gives transmission a lobe of its own. What `UsdPreviewSurface`
 //!   and `disney_principled` transmit is smooth, and has none.
-//! - Sheen and fuzz have distributions of their own. The form of G2 is left open.
+//! - Sheen and fuzz have distributions of their own. G2 is left open.
 //! - Defaults are those of the node definitions: `standard_surface` 1.0.1, `open_pbr_surface` 1.1,
 //!   `gltf_pbr` 2.0.1, `UsdPreviewSurface` 2.6.
 //! - BSDFs are followed through `surface`, `layer`, `mix`, `add` and `multiply`, and through the
-//!   graphs of nodes that the document defines itself (`nodedef`); weights of 0 end there.
+//!   graphs of nodes that the document defines itself (`nodedef`); not through weights of 0.
 //! - A shader appears once for each `surfacematerial` that uses it, under that name, or else under
 //!   its own. A material is used if a `materialassign` names it, or if the document has none.
 //! - An input with an `output` alone is connected to that output of the document. Inputs that the
@@ -46,7 +46,7 @@
 //! - An image is read in its first channel if it is a float, else in the channel that is taken from
 //!   it; it is decoded from sRGB if it is a colour in the colour space `srgb_texture`. A file with
 //!   `<UDIM>` or `<UVTILE>` in its name is all the tiles that exist.
-//! - `fileprefix` and `colorspace` of a document's root hold for what that document brings, and
+//! - `fileprefix` and `colorspace` of a document's root hold for the content of that document, and
 //!   files are relative to its folder.
 //!
 //! [materialx]: https://github.com/AcademySoftwareFoundation/MaterialX/tree/main/libraries
@@ -77,7 +77,6 @@ use crate::xml::{self, Element};
 use connect::{Instance, Source, named};
 use index::{At, Headers, Index, Scope};
 
-/// Reads a MaterialX document.
 pub(super) fn load(path: &Path) -> Result<Scene> {
     let mut xml = xml::Reader::new();
     let mut root = xml.open(path, &["materialx"], "a MaterialX document")?;
@@ -102,7 +101,7 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
 }
 
 /// Replaces each `<xi:include>` by the content of its document, and keeps the attributes of every
-/// document's root, which hold for what it brings.
+/// document's root, which hold for its content.
 fn expand(
     root: &mut Element,
     folder: &Path,
@@ -224,7 +223,7 @@ impl<'a> Reader<'a> {
                 Ok(Some(shader)) => {
                     has_shader = true;
                     let materials = shaders.of(shader);
-                    // Both sides may have the same.
+                    // Both sides may have the same shader.
                     if materials.last() != Some(&name) {
                         materials.push(name);
                     }

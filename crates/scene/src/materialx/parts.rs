@@ -1,4 +1,4 @@
-//! What a surface is made of: the nodes that combine BSDFs, followed to those.
+//! The BSDFs of a surface, found by following the nodes that combine them.
 
 use std::collections::HashSet;
 
@@ -14,7 +14,7 @@ use crate::xml::Element;
 /// A node to follow, with the output that is meant, and whether a thin film lies on it.
 type Step<'a> = (At<'a>, Option<&'a str>, bool);
 
-/// What a surface is made of, without what has a weight of 0.
+/// The BSDFs of a surface, without those of weight 0.
 #[derive(Default)]
 pub(super) struct Parts<'a> {
     /// Shading models and microfacet BSDFs, and whether a thin film lies on them.
@@ -47,7 +47,7 @@ impl<'a> Reader<'a> {
         Ok(parts)
     }
 
-    /// Notes what a node is, and what is to be followed from there.
+    /// Adds a node to `parts`, and the nodes to follow from it.
     fn part(&mut self, (at, output, film): Step<'a>, parts: &mut Parts<'a>) -> Result<()> {
         let node = at.node;
         if self.circle.contains(&at) {
@@ -79,7 +79,7 @@ impl<'a> Reader<'a> {
             }
             "layer" => {
                 let top = self.index.given(node, "top");
-                // What is wrong with it is said where it is followed.
+                // An error in `top` is reported where it is followed.
                 let top = top.and_then(|top| self.resolve(top, at.scope).ok().flatten());
                 let is_film = top.is_some_and(|(top, _)| top.node.tag == "thin_film_bsdf");
                 self.follow(at, "base", film || is_film, parts);
@@ -90,7 +90,7 @@ impl<'a> Reader<'a> {
             }
             "standard_surface" | "open_pbr_surface" | "gltf_pbr" | "disney_principled"
             | "UsdPreviewSurface" => {
-                // All have a diffuse part.
+                // All have a diffuse component.
                 parts.reason = Some(DIFFUSE);
                 parts.microfacets.push((at, film));
             }
@@ -101,7 +101,7 @@ impl<'a> Reader<'a> {
             "sheen_bsdf" => parts.fabric |= self.greatest(at, "weight", 1.0)? > 0.0,
             "chiang_hair_bsdf" => parts.reason = Some("a fibre model, not a microfacet one"),
             "surface_unlit" => parts.reason = Some("emits light, without microfacets"),
-            // It lies on another BSDF, which it is the Fresnel term of.
+            // A film changes the Fresnel term of the BSDF under it; a medium has no lobe.
             "thin_film_bsdf" | "absorption_vdf" | "anisotropic_vdf" => {}
             _ => match self.implemented(at, output)? {
                 Some(output) => parts.left.push((output, None, film)),
@@ -111,8 +111,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Notes what an input of a node is connected to; if that is undefined, the other inputs are
-    /// still followed.
+    /// Adds what an input is connected to; if that is undefined, other inputs are still followed.
     fn follow(&self, at: At<'a>, name: &'static str, film: bool, parts: &mut Parts<'a>) {
         let Some(input) = self.index.given(at.node, name) else { return };
         match self.source(At::new(input, at.scope)) {

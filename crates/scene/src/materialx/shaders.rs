@@ -14,18 +14,17 @@ pub(super) const LEAST_ALPHA: f64 = 1e-8;
 /// The lower limit of α in `gltf_pbr`.
 const LEAST_GLTF_ALPHA: f64 = 1e-5;
 
-/// What a shading model consists of.
 #[derive(Default)]
 pub(super) struct Model {
     pub(super) lobes: Vec<Lobe>,
-    /// The names of lobes that say something impossible, and why.
+    /// The names of lobes with an impossible value, and the errors.
     pub(super) failed: Vec<(Option<&'static str>, SceneError)>,
-    /// The input that adds a fabric's lobe, if it does.
+    /// The input that adds a fabric's lobe, if its weight is above 0.
     pub(super) fabric: Option<&'static str>,
 }
 
 impl Model {
-    /// Adds a lobe; one whose roughness is impossible costs itself alone.
+    /// Adds a lobe; an impossible roughness leaves out this lobe alone.
     fn push(
         &mut self,
         name: Option<&'static str>,
@@ -38,7 +37,7 @@ impl Model {
         }
     }
 
-    /// Whether there is a further lobe of this weight; one that is impossible costs it alone.
+    /// Whether the lobe's weight is above 0; an impossible weight leaves out this lobe alone.
     fn has(&mut self, name: &'static str, weight: Result<Interval>) -> bool {
         match weight {
             Ok(weight) => weight.max > 0.0,
@@ -147,7 +146,7 @@ impl<'a> Reader<'a> {
         }
 
         let mut model = Model::default();
-        // It is the weight of the metal's lobe; of the dielectric it changes the index alone.
+        // `specular_weight` weights the metal's lobe; of the dielectric it only changes the index.
         if specular.max > 0.0 || transmission.max > 0.0 && metalness.min < 1.0 {
             let fresnel = match metal {
                 _ if film => None,
@@ -254,7 +253,7 @@ impl<'a> Reader<'a> {
         if metallic.max + specular.max > 0.0 {
             let fresnel = match metal {
                 Metal::All => self.colour(at, "baseColor", [0.16; 3])?.and_then(schlick),
-                // A weight of 0.08 `specular` on a constant reflectance is no such term.
+                // The dielectric's reflectance is constant, times 0.08 `specular`: no Fresnel term.
                 Metal::None | Metal::Some => None,
             };
             model.push(None, base.map(|(r, anisotropy)| stretched(r, anisotropy)), fresnel);
@@ -268,7 +267,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The Fresnel term of Schlick's approximation, for reflectances from 0 to 1.
+/// Schlick's approximation; `None` unless every reflectance is in [0, 1].
 pub(super) fn schlick(f0: [f64; 3]) -> Option<Reflectance> {
     f0.iter().all(|f0| (0.0..=1.0).contains(f0)).then_some(Reflectance::Schlick(f0))
 }

@@ -103,7 +103,7 @@ impl<'a> Reader<'a> {
                 let scale = eta.map_rising(|eta| (0.65 * eta - 0.35).max(0.0));
                 let transmission = self.principled(bsdf, scale)?;
                 let fresnel = self.fresnel_or_warn(constant_dielectric(eta, bsdf))?;
-                // A tint mixes Schlick's reflectance in, of the reflection alone.
+                // A tint mixes Schlick's reflectance into the reflection alone.
                 let tint = self.weight(bsdf, "spec_tint");
                 let untinted = tint.map(|tint| fresnel.filter(|_| tint.max == 0.0));
                 let untinted = self.fresnel_or_warn(untinted)?;
@@ -134,7 +134,7 @@ impl<'a> Reader<'a> {
         self.builder.ignore(name, class, &bsdf.place, reason)
     }
 
-    /// Lists the clearcoat of a principled BSDF, if it has one.
+    /// Lists the clearcoat of a principled BSDF as ignored, unless its weight is 0.
     fn clearcoat(&mut self, bsdf: &'a Element, name: &str) -> Result<()> {
         if self.weight(bsdf, "clearcoat")?.max == 0.0 {
             return Ok(());
@@ -173,7 +173,8 @@ impl<'a> Reader<'a> {
         Ok(alpha.map_rising(|alpha| alpha.max(LEAST_ALPHA)))
     }
 
-    /// The roughness of the principled BSDFs; `scale` is that of the thin BSDF's transmission.
+    /// The roughness of the principled BSDFs; `scale` multiplies `roughness`, and is 1 except for
+    /// the thin BSDF's transmission.
     fn principled(&mut self, bsdf: &'a Element, scale: Interval) -> Result<Roughness> {
         let unit = |value: Interval, name: &str| {
             if value.min >= 0.0 && value.max <= 1.0 {
@@ -208,7 +209,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The name of a coat's lobe, which needs one since the BSDF inside may have that of the outer one.
+/// The name of a coat's lobe, since the BSDF inside may have the same name as the coat.
 fn coating(class: &str) -> Option<&'static str> {
     matches!(class, "coating" | "roughcoating").then_some("coating")
 }

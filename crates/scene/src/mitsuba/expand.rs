@@ -1,4 +1,4 @@
-//! Included files, and values in place of parameters.
+//! Included files, and the values of parameters (`$name`).
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -19,12 +19,11 @@ pub(super) struct Expansion<'a> {
     defaults: HashMap<String, String>,
     /// Folders in which files are looked up: the scene's own, then those of `<path>`.
     pub(super) folders: Vec<PathBuf>,
-    /// Whether something that is included is not seen.
+    /// Whether an included file could not be read.
     pub(super) incomplete: bool,
 }
 
 impl<'a> Expansion<'a> {
-    /// Of a scene in `folder`.
     pub(super) fn new(folder: &Path, builder: &'a mut Builder) -> Self {
         Self {
             builder,
@@ -102,7 +101,7 @@ impl<'a> Expansion<'a> {
         Ok(if root.tag == "scene" { root.children } else { vec![root] })
     }
 
-    /// Replaces each `$name` in the attributes by its value, the longest name that is known.
+    /// Replaces each `$name` in the attributes by its value; the longest known name counts.
     fn substitute(&self, element: &mut Element) -> Result<()> {
         for (_, value) in element.attributes.iter_mut().filter(|(_, value)| value.contains('$')) {
             let mut parts = value.split('$');

@@ -38,7 +38,7 @@ const INDICES: [(&str, f64); 23] = [
 ];
 
 /// Presets of Mitsuba for which no index is known here (`bsdfs/conductor.cpp`), without the ending
-/// of those that are Palik's measurements.
+/// `_palik`.
 const UNKNOWN: &str = "AlAs AlSb Be CsI Cu2O CuO Hg HgTe Ir K Li MgO Mo Na Nb Rh Se Se-e SiC SnTe \
                        Ta Te Te-e ThF4 TiC TiN TiO2 TiO2-e V VC VN a-C d-C";
 
@@ -81,14 +81,13 @@ impl<'a> Reader<'a> {
         }
         let default = if class.ends_with("plastic") { "polypropylene" } else { "bk7" };
         let (inside, outside) = (index(bsdf, "int_ior", default)?, index(bsdf, "ext_ior", "air")?);
-        // Each by itself, since two impossible ones may make a possible one.
+        // Each is checked, since two impossible indices may have a possible ratio.
         for index in [inside, outside] {
             dielectric(index, &bsdf.place)?;
         }
         dielectric(inside / outside, &bsdf.place).map(Some)
     }
 
-    /// The Fresnel term of a conductor.
     fn conductor(&self, bsdf: &Element) -> Result<Option<Reflectance>> {
         let material = bsdf.child_named("material");
         let name = match material {
@@ -105,13 +104,13 @@ impl<'a> Reader<'a> {
         };
         match (bsdf.child_named("eta"), bsdf.child_named("k")) {
             (None, None) if name != "none" => preset(name, &material.unwrap_or(bsdf).place),
-            // A part of a preset, which is known as a whole only.
+            // Only one of a preset's eta and k is replaced: the Fresnel term is left open.
             (None, _) | (_, None) if name != "none" => Ok(None),
             (eta, k) => {
                 let eta = eta.map_or(Ok(Some([0.0; 3])), read)?;
                 let k = k.map_or(Ok(Some([1.0; 3])), read)?;
                 let of = |(eta, k): ([f64; 3], [f64; 3])| match eta {
-                    // Such an index reflects everything, whatever the extinction is.
+                    // An index of 0 reflects everything, whatever the extinction is.
                     [0.0, 0.0, 0.0] => Ok(Reflectance::Mirror),
                     eta => conductor(eta, k, &bsdf.place),
                 };

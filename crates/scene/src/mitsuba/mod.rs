@@ -12,8 +12,8 @@
 //! - `principledthin` has the same reflection lobe, and one for transmission with r (0.65 η − 0.35)
 //!   instead of r; both only if `spec_trans` is not 0.
 //! - `conductor`, `dielectric`, `thindielectric` and `plastic` are smooth.
-//! - `roughcoating` and the smooth `coating` of Mitsuba 0.6 are a lobe "coating" each, beside the
-//!   BSDF inside them.
+//! - `roughcoating` and the smooth `coating` of Mitsuba 0.6 are a lobe "coating" each, in addition
+//!   to the BSDF inside them.
 //! - A metal's reflectance is read from `eta` and `k`, each an `rgb` triple or a single number, or
 //!   from the preset `material`, where [`microfacet_sampler::Metal`] has that metal; `none`, which
 //!   is the default, is a mirror.
@@ -24,17 +24,17 @@
 //! - A `bitmap` texture is decoded from sRGB unless it is `raw`; its luminance is used.
 //! - `$name` in an attribute stands for the value that `<default>` gives it.
 //!
-//! Scenes of Mitsuba 0.6 are read as far as they share the names, and with its spellings, such as
-//! `intIOR` and `alphaU`, as well; its distributions `phong` and `as` and its BSDFs
-//! `phong`, `ward` and `sssbrdf` are not read. Where the scene's own `version` begins with 0, a
-//! conductor is copper by default.
+//! Scenes of Mitsuba 0.6 are read where their names are those of Mitsuba 3, or older spellings of
+//! them, such as `intIOR` and `alphaU`. The distributions `phong` and `as` and the BSDFs `phong`,
+//! `ward` and `sssbrdf` are not read. Where the scene's own `version` begins with 0, a conductor is
+//! copper by default.
 //!
-//! Mitsuba refuses a property that a plugin does not have. Here those of BSDFs with lobes, and of
-//! the textures of their roughness, are warned of, and the rest is read.
+//! Mitsuba refuses a property that a plugin does not have. Here such a property of a BSDF with
+//! lobes, or of a texture of its roughness, gives a warning, and the rest is read.
 //!
-//! A BSDF with something impossible in it is listed as not understood, and the rest is read. A bad
-//! index of refraction leaves the lobe without its Fresnel term. References to what does not exist,
-//! and those in a circle, are warned of.
+//! A BSDF with an impossible value is listed as not understood, and the rest is read. A bad index
+//! of refraction leaves the lobe without its Fresnel term. References to what does not exist, and
+//! references in a circle, give a warning.
 //!
 //! [bsdfs]: https://mitsuba.readthedocs.io/en/stable/src/plugin_reference/plugins_bsdfs.html
 
@@ -54,7 +54,6 @@ use crate::references::{Memo, circle};
 use crate::xml::Element;
 use expand::Expansion;
 
-/// Reads a Mitsuba 3 scene.
 pub(super) fn load(path: &Path) -> Result<Scene> {
     let mut builder = Builder::new(Format::Mitsuba);
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -116,12 +115,12 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// The BSDFs that shapes use, themselves or inside others; `None` if that cannot be known.
+    /// The BSDFs that shapes use, directly or inside other BSDFs; `None` if that cannot be known.
     fn used(&mut self, root: &'a Element) -> Option<HashSet<&'a Element>> {
         if self.incomplete {
             return None;
         }
-        // Without shapes each is followed too, for references to what does not exist.
+        // Without shapes every BSDF is followed, to find references to what does not exist.
         let mut pending = root.all("shape");
         let everything = pending.is_empty();
         if everything {
@@ -144,7 +143,7 @@ impl<'a> Reader<'a> {
         (!everything).then_some(used)
     }
 
-    /// Warns of an element that has itself inside, by `<ref>`.
+    /// Warns of an element that contains itself through a `<ref>`.
     fn check_circles(&mut self, root: &'a Element) {
         let inside = |element: &'a Element| {
             let id = element.attribute("id").filter(|_| element.tag == "ref");
@@ -154,7 +153,7 @@ impl<'a> Reader<'a> {
             return;
         };
         let references = circle.into_iter().filter(|element| element.tag == "ref");
-        // A circle has a reference, since elements are a tree without them.
+        // A circle has a reference, since without references elements are a tree.
         let last = references.clone().next_back().unwrap_or(root);
         let names: Vec<&str> =
             [last].into_iter().chain(references).filter_map(|e| e.attribute("id")).collect();

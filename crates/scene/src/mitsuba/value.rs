@@ -17,7 +17,7 @@ const TEXTURES: [Row; 5] = [
     ("uniform", "value wavelength_min wavelength_max lambda_min lambda_max"),
 ];
 
-/// The property of that name, in either spelling.
+/// The property `name`, in the spelling of Mitsuba 3 or of 0.6.
 pub(super) fn named<'a>(element: &'a Element, name: &str) -> Option<&'a Element> {
     let is_older = |child: &&Element| child.attribute("name").is_some_and(|n| newer(n) == name);
     element.child_named(name).or_else(|| element.children.iter().find(is_older))
@@ -40,13 +40,13 @@ fn newer(name: &str) -> String {
 }
 
 impl<'a> Reader<'a> {
-    /// Warns of properties that a plugin has not, unless it is in none of the `rows`.
+    /// Warns of properties that a plugin does not have; says nothing of plugins in no row.
     pub(super) fn check_properties(&mut self, rows: &[Row], plugin: &Element) {
         let class = plugin.attribute("type").unwrap_or_default();
         let known = names_of(rows, class);
         for child in &plugin.children {
             let id = child.attribute("id").filter(|_| child.tag == "ref");
-            // What does not exist is warned of where it is used.
+            // A reference to what does not exist is warned of where it is followed.
             let what = id.map_or(Some(child), |id| self.ids.get(id).copied());
             // BSDFs inside have any name, and the others are no properties.
             let others = ["bsdf", "default", "path", "alias"];

@@ -1,4 +1,4 @@
-//! Materials and textures as they are written: a class with parameters.
+//! Materials and float textures as they are written: a class with parameters.
 
 use std::rc::Rc;
 
@@ -11,7 +11,6 @@ use crate::builder::has_word;
 pub(super) const OLDER: &str = "disney fourier glass kdsubsurface matte metal mirror plastic \
                                 substrate translucent uber";
 
-/// A material or a float texture: a class with parameters.
 #[derive(Debug)]
 pub(super) struct Definition {
     pub(super) name: String,
@@ -35,7 +34,7 @@ impl Definition {
         self.parameters.iter().find(|p| p.name == name).map(Rc::as_ref)
     }
 
-    /// Whether pbrt-v3 has such a material and pbrt-v4 has not.
+    /// Whether pbrt-v3 has such a material and pbrt-v4 does not.
     pub(super) fn is_of_v3(&self) -> bool {
         has_word(OLDER, &self.class)
             || self.class == "mix" && self.parameter("namedmaterial1").is_some()

@@ -9,7 +9,7 @@ use super::definition::{Definition, Parameter};
 use crate::Result;
 use crate::fresnel::{conductor, dielectric, metal};
 
-/// pbrt lowers a conductor's reflectance to this, for which k is still finite.
+/// pbrt's upper limit of a conductor's reflectance, at which k is still finite.
 const MOST_REFLECTIVE: f64 = 0.9999;
 
 /// Indices of refraction of pbrt's glasses at the d line, 587.56 nm.
@@ -37,7 +37,7 @@ impl Parameter {
         (self.kind == "rgb").then_some([r, g, b])
     }
 
-    /// What it names, if it is a spectrum that is given by the name of one, or of a file.
+    /// The name of a spectrum or of a file with one; `None` if the parameter holds another value.
     fn spectrum(&self) -> Option<&str> {
         match &self.values[..] {
             [name] if self.kind == "spectrum" => Some(name),
@@ -58,7 +58,7 @@ impl Parameter {
     }
 }
 
-/// The Fresnel term of an interface, unless a spectrum or a texture leaves it open.
+/// The Fresnel term of an interface; `None` if a spectrum or a texture leaves it open.
 pub(super) fn fresnel(material: &Definition, prefix: &str) -> Result<Option<Reflectance>> {
     match (&material.class[..], prefix) {
         ("conductor", _) => under(1.0, material, prefix),
@@ -70,7 +70,7 @@ pub(super) fn fresnel(material: &Definition, prefix: &str) -> Result<Option<Refl
     }
 }
 
-/// The dielectric whose outside is the air.
+/// The Fresnel term of a dielectric in air.
 fn outside(material: &Definition, prefix: &str) -> Result<Option<Reflectance>> {
     // The defaults in materials.cpp.
     let default = if material.class == "subsurface" { 1.33 } else { 1.5 };
@@ -105,13 +105,13 @@ fn under(coat: f64, material: &Definition, prefix: &str) -> Result<Option<Reflec
     let Some((eta, k)) = index else {
         return Ok(None);
     };
-    // As written first, which is what an error is to quote.
+    // The numbers are checked as written first, so that an error quotes them.
     conductor(eta, k, &material.place)?;
     let relative = |of: [f64; 3]| of.map(|x| x / coat);
     conductor(relative(eta), relative(k), &material.place).map(Some)
 }
 
-/// eta or k of a conductor, unless samples or a texture leave it open; copper's by default.
+/// eta or k of a conductor, copper's by default; `None` if samples or a texture leave it open.
 fn part(
     parameter: Option<&Parameter>,
     end: &str,

@@ -12,12 +12,11 @@ use crate::builder::{Lobe, has_word};
 /// If no α reaches this, pbrt treats the surface as smooth
 /// (`TrowbridgeReitzDistribution::EffectivelySmooth`).
 const SMOOTH: f64 = 1e-3;
-/// Lower limit of α along one axis of a surface that is rough along the other (constructor of the
-/// same class).
+/// Lower limit of α along one axis of a surface that is rough along the other (constructor of
+/// `TrowbridgeReitzDistribution`).
 const LEAST: f64 = 1e-4;
 
 impl Reader {
-    /// Adds the lobes of a material.
     pub(super) fn lobes(&mut self, material: &Definition, used: bool) -> Result<()> {
         let (name, place) = (&material.name, &material.place);
         let class = &material.class;
@@ -58,7 +57,7 @@ impl Reader {
         Ok(())
     }
 
-    /// Adds the lobe of one interface.
+    /// Adds the lobe of one interface, whose parameters' names begin with `prefix`.
     fn lobe(
         &mut self,
         material: &Definition,

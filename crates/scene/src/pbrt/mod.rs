@@ -27,16 +27,16 @@
 //!   "linear" (`util/image.cpp`). The value is multiplied by `scale`; `invert` makes it 1 minus
 //!   that. Left out: what covers less than a pixel on the screen is the first channel's average
 //!   under any filter, and a palette's transparency, which pbrt drops, counts as opacity.
-//! - Included files are looked up beside the scene's own file. `Import` is an `Include` that leaves
-//!   the graphics state unchanged.
+//! - Included files are looked up in the folder of the scene's own file. `Import` is an `Include`
+//!   that leaves the graphics state unchanged.
 //!
-//! pbrt refuses a scene with a material that is not defined, is defined twice, has an impossible
-//! value, or a parameter that its class has not, or has with another type. Here such a material is
-//! warned of, or listed as not understood, and the rest is read; of two definitions the first
-//! counts, and a number is read whatever its type is. Directives of pbrt-v1 and v2 are passed over
-//! with a warning, and materials that pbrt-v3 has and v4 has not are listed as not understood;
-//! mixtures of v3 are followed, and its mapping of the roughness of `subsurface`, which is another,
-//! is warned of.
+//! pbrt refuses a scene with a material that is not defined or is defined twice, has an impossible
+//! value, or has a parameter that its class does not have or has with another type. Here such a
+//! material gives a warning or is listed as not understood, and the rest is read; of two
+//! definitions the first counts, and a number is read whatever its type is. Directives of pbrt-v1
+//! and v2 are skipped with a warning. Materials that pbrt-v3 has and v4 does not are listed as not
+//! understood; mixtures of v3 are followed. pbrt-v3 maps the roughness of `subsurface` differently,
+//! which gives a warning.
 //!
 //! Everything that belongs to shapes is skipped without being read.
 //!
@@ -65,11 +65,10 @@ use crate::include::Includes;
 use crate::limits;
 use crate::references::Memo;
 
-/// The directives that are followed.
 const FOLLOWED: &str = "Attribute AttributeBegin AttributeEnd Import Include MakeNamedMaterial \
                         Material NamedMaterial ObjectBegin ObjectEnd Shape Texture";
 
-/// Those that say nothing of materials.
+/// Directives that do not concern materials.
 const PASSED_OVER: &str = "Accelerator AreaLightSource Camera ColorSpace ConcatTransform \
                            CoordSysTransform CoordinateSystem Film Identity Integrator LightSource \
                            LookAt MakeNamedMedium MediumInterface ObjectInstance Option PixelFilter \
@@ -88,7 +87,6 @@ fn older(directive: &str) -> Option<&'static str> {
     }
 }
 
-/// Reads a pbrt-v4 scene.
 pub(super) fn load(path: &Path) -> Result<Scene> {
     let mut reader = Reader {
         folder: path.parent().unwrap_or(Path::new("")).to_owned(),
@@ -215,7 +213,7 @@ impl Reader {
                 let own = tokens.parameters()?;
                 self.hold(&own, &place)?;
                 self.check_parameters(&MATERIALS, &class, &own);
-                // The empty type is an old word for this one.
+                // The empty type is an older name of "interface".
                 let class = if class.is_empty() { "interface".to_owned() } else { class };
                 let name = self.by_place(&class, &place);
                 let slot = self.slot(&place)?;
@@ -275,7 +273,7 @@ impl Reader {
                     let (word, hint) = (shortened(other), did_you_mean(other, &known));
                     return Err(place.syntax(format!("unknown directive {word}{hint}")));
                 };
-                // One of them tells the version.
+                // The first older directive shows the version.
                 if !std::mem::replace(&mut self.older, true) {
                     let warning = format!(
                         "{other} is a directive of {version}; such ones are passed over, and \
@@ -301,7 +299,7 @@ impl Reader {
         Ok(())
     }
 
-    /// Counts what is kept of a directive at `place`.
+    /// Counts the bytes that are kept of a directive at `place`.
     fn hold(&mut self, parameters: &[Rc<Parameter>], place: &Place) -> Result<()> {
         self.held += parameters.iter().map(|parameter| parameter.bytes() as u64).sum::<u64>();
         if self.held <= limits::PBRT_HELD {
@@ -333,7 +331,7 @@ impl Reader {
         Ok(())
     }
 
-    /// The name of a material that has none: its type and its place, short enough for a name.
+    /// A name for a material that has none: its type, its file relative to the scene, its line.
     fn by_place(&self, class: &str, place: &Place) -> String {
         let class = if class.is_empty() { "material" } else { class };
         let file = place.file.strip_prefix(&self.folder).unwrap_or(&place.file);

@@ -6,16 +6,15 @@ use super::Reader;
 use super::definition::Parameter;
 use crate::builder::has_word;
 
-/// Classes, types, and the names that a parameter of one of those types may have in each of those
-/// classes; `*` is all.
+/// Classes (`*` for all), the types that a parameter of them may have, and the parameters' names.
 type Row = (&'static str, &'static str, &'static str);
 
 const FLOAT: &str = "float texture";
 const SPECTRUM: &str = "rgb spectrum blackbody texture";
 const INDEX: &str = "float rgb spectrum blackbody";
 
-/// Of the materials with lobes and of mixtures (`materials.cpp`; `type` and `normalmap` are in
-/// `scene.cpp`).
+/// Parameters of the materials with lobes and of mixtures (`materials.cpp`; `type` and `normalmap`
+/// are in `scene.cpp`).
 pub(super) const MATERIALS: [Row; 19] = [
     ("*", "string", "type normalmap"),
     (
@@ -38,7 +37,7 @@ pub(super) const MATERIALS: [Row; 19] = [
     ("subsurface", "float", "eta scale g"),
     ("subsurface", SPECTRUM, "sigma_a sigma_s mfp"),
     ("subsurface", "string", "name"),
-    // The second and the third name are of pbrt-v3, of which the amount may be a colour.
+    // The last two names are of pbrt-v3, in which the amount may be a colour.
     ("mix", "string", "materials namedmaterial1 namedmaterial2"),
     ("mix", "float rgb spectrum texture", "amount"),
 ];
@@ -49,7 +48,7 @@ const WITHOUT_LOBES: &str =
 
 const PLANE: &str = "checkerboard dots bilerp imagemap";
 
-/// Of the float textures of a range that is known (`textures.cpp`).
+/// Parameters of the float textures whose range is known (`textures.cpp`).
 pub(super) const TEXTURES: [Row; 14] = [
     (PLANE, "string", "mapping"),
     (PLANE, "float", "uscale vscale udelta vdelta"),
@@ -67,14 +66,12 @@ pub(super) const TEXTURES: [Row; 14] = [
     ("imagemap", "bool", "invert"),
 ];
 
-/// Whether a row is of a class.
 fn is_of((classes, ..): &Row, class: &str) -> bool {
     *classes == "*" || has_word(classes, class)
 }
 
 impl Reader {
-    /// Warns of the parameters that a class has not, or has with another type. Nothing is said of a
-    /// class that is in no row.
+    /// Warns of parameters that a class lacks or has with another type, if the class is in a row.
     pub(super) fn check_parameters(
         &mut self,
         rows: &[Row],

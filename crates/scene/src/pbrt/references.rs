@@ -16,7 +16,7 @@ impl Reader {
         named.sort_unstable_by_key(|&(_, slot)| slot);
         let named = named.into_iter().filter(|&(_, slot)| self.slots[slot].definition.is_none());
         let named = named.map(|(name, slot)| (name, &self.slots[slot].place));
-        // One that a NamedMaterial refers to is warned of there.
+        // A name that a NamedMaterial has, too, is in `named` already.
         let parts = (0..self.slots.len()).flat_map(|slot| self.parts(slot));
         let parts = parts.filter(|(name, _)| !self.names.contains_key(*name));
         let known = self.defined.iter().filter_map(|&slot| {
@@ -68,11 +68,11 @@ impl Reader {
         format!("material \"{name}\" is not defined{hint}; what uses it is left out")
     }
 
-    /// The names of the materials in a mixture; none of what is no mixture.
+    /// The names of the materials in a mixture; none for other classes.
     fn parts(&self, slot: usize) -> Vec<(&String, &Place)> {
         let definition = self.slots[slot].definition.as_ref();
         let mixture = definition.filter(|definition| definition.class == "mix");
-        // pbrt-v3 names each of them by a parameter of its own.
+        // pbrt-v3 names each of the two materials by its own parameter.
         let lists = ["materials", "namedmaterial1", "namedmaterial2"];
         let lists = lists.iter().filter_map(|list| mixture?.parameter(list));
         lists.flat_map(|list| list.values.iter().map(|name| (name, &list.place))).collect()

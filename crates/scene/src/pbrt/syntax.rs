@@ -27,7 +27,7 @@ pub(super) enum Token<'a> {
 }
 
 impl Token<'_> {
-    /// It as messages show it.
+    /// The token as messages show it.
     pub(super) fn shown(&self) -> Cow<'_, str> {
         match self {
             Token::Word(text) => shortened(text),
@@ -38,13 +38,12 @@ impl Token<'_> {
     }
 }
 
-/// The tokens of a file.
 pub(super) struct Tokens<'a> {
     text: &'a [u8],
     lines: Lines<'a>,
-    /// Where the rest begins.
+    /// Offset of the text that is left.
     at: usize,
-    /// Where the last token began.
+    /// Offset of the last token.
     start: usize,
 }
 
@@ -91,7 +90,7 @@ impl<'a> Tokens<'a> {
         self.at += rest.iter().position(|&byte| is_end(byte)).unwrap_or(rest.len());
     }
 
-    /// The text behind an opening quote, up to the closing one.
+    /// The text after an opening quote, up to the closing one.
     fn quoted(&mut self) -> Result<String> {
         let mut text = Vec::new();
         loop {
@@ -119,9 +118,9 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// Skips a list whose opening bracket is behind, without reading it.
+    /// Skips a list whose opening bracket has been read, without storing its tokens.
     ///
-    /// Almost all bytes of a large scene are numbers in such lists.
+    /// Almost all bytes of a large scene are numbers in lists.
     fn skip_list(&mut self, open: &Place) -> Result<()> {
         loop {
             self.skip_to(|byte| b"]\"#[".contains(&byte));

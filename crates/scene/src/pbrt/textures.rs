@@ -8,7 +8,7 @@ use crate::Result;
 use crate::texture::{Channel, Encoding};
 
 impl Reader {
-    /// A parameter that is a number or a texture.
+    /// The range of a parameter that is a number or a texture.
     pub(super) fn value(&mut self, parameter: &Parameter) -> Result<Interval> {
         if parameter.kind != "texture" {
             return parameter.number().map(Interval::point);
@@ -62,7 +62,7 @@ impl Reader {
         })
     }
 
-    /// The values of an image, of which pbrt's filters read different channels.
+    /// The range of an image; pbrt's filters read different channels.
     fn image(&mut self, texture: &Definition) -> Interval {
         let text = |name| texture.parameter(name).map(Parameter::first);
         let Some(file) = text("filename") else {
@@ -71,7 +71,7 @@ impl Reader {
         };
         let is_png = file.to_ascii_lowercase().ends_with(".png");
         let encoding = match text("encoding") {
-            // pbrt takes other integers for sRGB, whatever is said of them.
+            // pbrt decodes integers of other formats as sRGB, whatever `encoding` is.
             _ if !is_png => Encoding::Srgb,
             Some("linear") => Encoding::Linear,
             None | Some("sRGB") => Encoding::Srgb,
@@ -85,8 +85,8 @@ impl Reader {
         match text("filter").unwrap_or("bilinear") {
             "point" => of(Channel::Red),
             "bilinear" | "trilinear" => of(Channel::AlphaOrMean),
-            // EWA, also in place of a filter that pbrt does not know: single pixels, or between
-            // them where the ellipse has no width.
+            // EWA, which pbrt also uses for an unknown filter, reads single pixels, or interpolates
+            // where its ellipse has no width.
             _ => of(Channel::Red).union(of(Channel::AlphaOrMean)),
         }
     }

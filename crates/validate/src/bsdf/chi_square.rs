@@ -13,18 +13,17 @@ use super::grid::Grid;
 use super::specimen::Unmade;
 use crate::run::{Judged, Options, Outcome, judge, on_threads};
 
-/// Cells, about, and lights that they are made from: more where more samples resolve more.
+/// The approximate number of cells, and the fewest and the most lights that they are made from.
 const CELLS: usize = 256;
 const PILOT: [usize; 2] = [4096, 8192];
-/// What the density leaves to one is judged by itself from this share on; quadrature is good to
+/// From this share on, draws without a light are a cell of their own; the error of quadrature is
 /// some 1e-6 in each cell.
 const LEAST_LEFT: f64 = 2e-3;
 
 /// Draws `samples` lights by `draw(choice, u)`, and compares their counts with the integrals of
-/// `density`. Draws without a light are a cell of their own, which is expected to hold what the
-/// density leaves to one. The elevations `edges` are edges of cells.
-/// Cells are also small where there are many lights of `guide`, such as those of a narrow part of
-/// the density that is seldom drawn.
+/// `density`. Draws without a light are a cell of their own, which is expected to hold 1 minus the
+/// integral of the density. The elevations `edges` are edges of cells. Cells are also small where
+/// there are many lights of `guide`, for example of a narrow peak that is seldom drawn.
 pub fn test(
     v: Vec3,
     samples: usize,
@@ -48,7 +47,7 @@ pub fn test(
     let mut shares = grid.shares(samples, density);
     let left = 1.0 - shares.iter().sum::<f64>();
     if left < LEAST_LEFT {
-        // Little is lost: it would be mostly the errors of all cells together.
+        // So small a rest would mostly be the quadrature errors of all cells.
         let lost = counts.pop().unwrap_or(0);
         counts[rest - 1] += lost;
         shares[rest - 1] += left;

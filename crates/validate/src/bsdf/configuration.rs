@@ -43,7 +43,7 @@ impl Configuration {
         let cos = f64::from(self.view().z);
         let (steep, eta) = (f64::from(steep_cosine(eta as f32)), f64::from(eta as f32));
         let eta = if cos > 0.0 { eta } else { 1.0 / eta };
-        // Of facets with a smaller cosine |cos θ_v + η l·n| is less than it times |v + η l|.
+        // A facet's |m·n| is |cos θ_v + η l·n| / |v + η l|, and |v + η l| ≤ 1 + η.
         let (at, width) = (-cos / eta, steep * (1.0 + eta) / eta);
         [at - width, at, at + width]
             .into_iter()
@@ -85,7 +85,7 @@ fn any<T: Copy, const N: usize>(random: &mut impl Rng, all: [T; N]) -> T {
     all[random.random_range(0..N)]
 }
 
-/// A specimen of any lobe.
+/// A specimen with a random lobe.
 fn specimen(surface: Surface, tilted: bool, random: &mut StdRng) -> Specimen {
     let lobe = match random.random_range(0..8) {
         _ if tilted => LobeOf::Ellipsoid([
@@ -131,7 +131,7 @@ fn configuration(i: usize, interfaces: &[Specimen], random: &mut StdRng) -> Conf
     let theta = match i % 16 {
         0 | 13 => FRAC_PI_2 - log_uniform(random, 1e-4, 1e-2),
         3 | 14 => log_uniform(random, 1e-6, 1e-2),
-        // Straight above.
+        // Along the normal.
         4 => 0.0,
         _ => random.random_range(0.0..FRAC_PI_2),
     };

@@ -3,8 +3,8 @@
 //!
 //! One bounce is integrated with the model under the exact reflectance. What compensation adds to
 //! it is the difference between the BSDF's own f with and without it: for round lobes it does not
-//! depend on the azimuth of the light, so that lights on the side of the view measure it, away from
-//! any peak. Samples are a check of both, with their own standard error.
+//! depend on the azimuth of the light, so that it is measured with lights on the side of the view,
+//! away from any peak. Samples are a check of both, with their own standard error.
 
 use std::fmt;
 
@@ -31,7 +31,7 @@ const PROMISED: f32 = 0.02;
 /// Standard errors that the mean of samples may be off, among some hundred rows.
 const ERRORS: f64 = 4.5;
 
-/// Shapes with an index of refraction each, such that all ends meet once.
+/// Pairs of γ and η among which the ends of both ranges occur.
 pub const PAIRS: [[f64; 2]; 7] = [
     [1.501, 1.5],
     [1.6, 1.33],
@@ -49,9 +49,9 @@ pub struct Row {
     pub specimen: Specimen,
     /// Cosine of the view; below 0 it is from inside.
     pub cos_theta: f32,
-    /// The light that returns, of 1.
+    /// The share of light that returns.
     pub returned: f64,
-    /// What one bounce returns, without compensation; with plastic that off the coat.
+    /// What one bounce returns, without compensation; for plastic, off the coat.
     pub single: f64,
     /// The mean weight of samples, for some rows.
     pub sampled: Option<Estimate>,
@@ -67,9 +67,9 @@ impl Row {
         -TOLERANCE <= self.returned - 1.0 && self.returned - 1.0 <= most && self.sampled_well()
     }
 
-    /// Standard errors that the mean of samples is off, beyond what quadrature may be.
+    /// The error of the mean of samples in standard errors, beyond the error of quadrature.
     pub fn standard_errors(&self) -> Option<f64> {
-        // Of mirrors it is off by up to 9e-5.
+        // For mirrors the quadrature errs by up to 9e-5.
         const QUADRATURE: f64 = 1e-4;
         let Estimate { mean, error } = self.sampled?;
         let beyond = (mean - self.returned).abs() - QUADRATURE;
@@ -117,7 +117,7 @@ impl fmt::Display for Row {
 /// # Errors
 /// [`Unmade`] if they cannot be baked.
 pub fn tables(pairs: &[[f64; 2]], masking: Masking, settings: Settings) -> Result<Tables, Unmade> {
-    // One by one: a range of roughness takes longer than these few.
+    // A table for each roughness, since baking a range takes longer.
     let specimens: Vec<Specimen> = rows(pairs, masking).into_iter().map(|(one, _)| one).collect();
     specimen::tables(&specimens, Quality::Default, settings)
 }
@@ -191,7 +191,7 @@ fn row(
     let whole = specimen.bsdf(tables)?;
     let v = direction(cos_theta);
     let single = single(&specimen, cos_theta)?;
-    // A base is seen from outside, and what the coat would transmit is no part of it.
+    // Of plastic only lights outside count: its coat's transmission is not returned.
     let sides: &[f32] =
         if matches!(specimen.surface, Surface::Dielectric(_)) { &[1.0, -1.0] } else { &[1.0] };
     let returned = single + broad(&whole, &specimen.facets().bsdf(tables)?, v, sides);
@@ -217,7 +217,7 @@ fn single(specimen: &Specimen, cos_theta: f32) -> Result<f64, Unmade> {
             return Ok(mirror);
         }
     };
-    // As single precision has it.
+    // The index rounded to single precision, as in the BSDF.
     let eta = f64::from(eta as f32);
     let eta = if cos_theta > 0.0 { eta } else { 1.0 / eta };
     let pane = model::fresnel::Dielectric::new(eta).map_err(unmade)?;
@@ -237,7 +237,7 @@ fn single(specimen: &Specimen, cos_theta: f32) -> Result<f64, Unmade> {
     Ok(reflected + transmitted)
 }
 
-/// ∫ of what one f has over another times the cosine, over lights on some sides of the surface.
+/// ∫ (f of `whole` − f of `facets`) cos θ over the lights on some sides of the surface.
 fn broad(whole: &AnyBsdf, facets: &AnyBsdf, v: Vec3, sides: &[f32]) -> f64 {
     over_lights(|sin, cos| {
         let more = |side: f32| {
@@ -249,7 +249,6 @@ fn broad(whole: &AnyBsdf, facets: &AnyBsdf, v: Vec3, sides: &[f32]) -> f64 {
     })
 }
 
-/// The mean weight of samples.
 fn sampled(bsdf: &AnyBsdf, v: Vec3, samples: usize, seed: u64) -> Estimate {
     let mut random = StdRng::seed_from_u64(seed);
     let (mut sum, mut squares) = (0.0, 0.0);
@@ -264,10 +263,10 @@ fn sampled(bsdf: &AnyBsdf, v: Vec3, samples: usize, seed: u64) -> Estimate {
     Estimate { mean, error: ((squares / n - mean * mean).max(0.0) / n).sqrt() }
 }
 
-/// The largest error that certificates state for the light of one bounce: a dielectric's is in what
-/// it reflects and in what it transmits.
+/// The largest error that certificates state for the light of one bounce: for a dielectric the sum
+/// of those of what it reflects and transmits.
 fn certified(tables: &Tables, specimen: &Specimen) -> Option<f64> {
-    // Tables have the dense side's index over the thin side's.
+    // Tables hold the dense side's index over the thin side's.
     let index = match specimen.surface {
         Surface::Dielectric(eta) | Surface::Plastic(eta, _) => Some(eta.max(1.0 / eta)),
         _ => None,

@@ -1,5 +1,4 @@
-//! Cells of the sphere of lights, small where light is dense, and the integral of a density over
-//! each.
+//! Cells of the sphere of lights, small where light is dense, and integrals over each.
 //!
 //! Coordinates are the elevation above the surface and the azimuth, from the components of a light
 //! in double precision: both resolve single precision at the horizon and at the poles alike. The
@@ -14,7 +13,7 @@ use microfacet_core::gauss_legendre;
 
 /// Quadrature of a part of a cell, along both coordinates.
 const RULE: [(f64, f64); 4] = gauss_legendre();
-/// Halvings of a cell, at most: a rounding error of the density ends there.
+/// The most halvings of a cell: rounding errors of the density would call for more.
 const DEEPEST: usize = 12;
 
 /// Elevation and azimuth, each from a to b.
@@ -35,7 +34,7 @@ impl Cell {
 
 #[derive(Clone, Copy, Debug)]
 enum Node {
-    /// What is below `at` along a coordinate is the next node, the rest another.
+    /// Lights below `at` along a coordinate are in the next node, the others in `above`.
     Split {
         along: usize,
         at: f64,
@@ -44,7 +43,6 @@ enum Node {
     Leaf(usize),
 }
 
-/// Cells of the sphere.
 #[derive(Clone, Debug)]
 pub(super) struct Grid {
     /// The azimuth that the others are counted from, opposite to the seam.
@@ -52,8 +50,8 @@ pub(super) struct Grid {
     most: usize,
     edges: Vec<f64>,
     nodes: Vec<Node>,
-    /// Each cell in parts that hold few of the pilot's lights, and what encloses them: where
-    /// quadrature begins to look for peaks.
+    /// Each cell in parts that hold few of the pilot's lights, and the box that encloses these
+    /// lights: quadrature first looks for peaks there.
     cells: Vec<Vec<[Cell; 2]>>,
 }
 
@@ -72,7 +70,6 @@ impl Grid {
         grid
     }
 
-    /// The number of cells.
     pub(super) fn count(&self) -> usize {
         self.cells.len()
     }
@@ -109,7 +106,6 @@ impl Grid {
         if places.len() > self.most { median(cell, places) } else { None }
     }
 
-    /// The cell of a light.
     pub(super) fn cell(&self, l: Vec3) -> usize {
         let place = self.place(l);
         let mut node = 0;
@@ -127,10 +123,10 @@ impl Grid {
         }
     }
 
-    /// The integral of a density over each cell, to a part of the standard deviation of its count
-    /// among so many samples.
+    /// The integral of a density over each cell, to a fraction of the standard deviation of the
+    /// cell's count among `samples`.
     pub(super) fn shares(&self, samples: usize, density: impl Fn(Vec3) -> f32) -> Vec<f64> {
-        /// Part of a standard deviation.
+        /// Allowed error as a fraction of a standard deviation.
         const PART: f64 = 0.02;
         let typical = 1.0 / self.cells.len() as f64;
         let tolerance = PART * (typical / samples as f64).sqrt();
@@ -199,7 +195,7 @@ fn split<'a>(
     [(low, below), (high, above)]
 }
 
-/// The least part of a cell that holds these lights; the cell if there are none.
+/// The smallest box that holds these lights; the cell if there are none.
 fn enclosing(cell: &Cell, places: &[[f64; 2]]) -> Cell {
     let side = |along: usize| {
         let all = || places.iter().map(|place| place[along]);
@@ -208,8 +204,8 @@ fn enclosing(cell: &Cell, places: &[[f64; 2]]) -> Cell {
     if places.is_empty() { *cell } else { Cell([side(0), side(1)]) }
 }
 
-/// The ends of the panels of one side of a cell: the side of what encloses the lights, and to both
-/// ends of it ever wider ones, since density may fall off within a small part of the cell.
+/// The ends of the panels along one side of a cell: the range of its lights, and on both sides of
+/// that ever wider ones, since density may fall off within a small part of the cell.
 fn panels([low, high]: [f64; 2], [from, to]: [f64; 2]) -> Vec<f64> {
     const WIDER: f64 = 4.0;
     let width = (to - from).max(1e-6 * (high - low));
@@ -238,8 +234,8 @@ fn gauss(cell: &Cell, at: &impl Fn([f64; 2]) -> f64) -> f64 {
     RULE.iter().map(row).sum::<f64>() * (b - a) * (d - c)
 }
 
-/// The integral over a cell, in four parts where these do not agree with the whole, or where a peak
-/// beside the cell reaches into it between the places of the rule.
+/// The integral over a cell, in four parts where their sum differs from the whole, or where a peak
+/// next to the cell reaches into it between the nodes of the rule.
 fn refined(
     cell: &Cell,
     whole: f64,

@@ -1,9 +1,9 @@
-//! Judges of complete BSDFs, as a renderer calls them. They report errors and never repair.
+//! Tests of complete BSDFs, as a renderer calls them.
 //!
-//! [`chi_square`] compares the directions drawn with the density, cell by cell of a `grid` that
-//! is made for each [`configuration`] of BSDF and view. [`furnace`] asks whether white surfaces
-//! return all light, and [`reciprocity`] whether light may go back the way it came. A [`specimen`]
-//! is a BSDF as data, and bakes the albedos that it needs.
+//! [`chi_square`] compares the directions drawn with the density, cell by cell of a `grid` that is
+//! made for each [`configuration`] of BSDF and view. [`furnace`] tests whether white surfaces
+//! return all light, and [`reciprocity`] whether f/n² stays the same when view and light are
+//! exchanged. A [`specimen`] is a BSDF as data, and bakes the albedos that it needs.
 
 pub mod chi_square;
 pub mod configuration;

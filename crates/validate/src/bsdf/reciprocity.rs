@@ -12,18 +12,18 @@ use super::specimen::{LobeOf, Specimen, Surface, Unmade};
 
 /// Allowed difference of the two, relative to the larger.
 pub const TOLERANCE: f64 = 1e-4;
-/// An f below this part of 1/σxσy, about that of its peak, is not compared: the exponent of a tail
-/// turns rounding of the slope into a relative error.
+/// An f below this fraction of 1/σxσy, about that of its peak, is not compared: the exponent of a
+/// tail turns rounding of the slope into a relative error.
 const LEAST: f32 = 1e-4;
 
-/// The half vector n_v v + n_l l must be this long, times σ, and have this z: below, rounding of
+/// The half vector n_v v + n_l l must have this length, times σ, and this z: below, rounding of
 /// directions to single precision moves the facet's slope by more than 1e-5 of σ or of itself.
 const RESOLVED: f64 = 4e-3;
 const STEEP: f64 = 0.01;
-/// Smaller cosines of a facet that refracts are rounding, too.
+/// Below this cosine of a refracting facet, too, rounding moves its slope.
 const EDGE_ON: f64 = 0.01;
 /// The square of a facet's cosine must be this far from that of the critical angle, where F rises
-/// like a square root, from rounding, too.
+/// like a square root, which magnifies rounding.
 const CRITICAL: f64 = 1e-3;
 
 /// The largest difference, and where it was found.
@@ -44,23 +44,23 @@ pub struct Worst {
 pub struct Outcome {
     /// Pairs of directions that were compared, reflected and transmitted.
     pub pairs: [usize; 2],
-    /// The worst of all lobes, but tilted ones where a G1 is 1.
+    /// The worst of all lobes, except tilted ones where a G1 is 1.
     pub worst: Option<Worst>,
-    /// The worst of these: the area that a tilted lobe shows exceeds what it covers, its G1 is
-    /// clamped, and f is not reciprocal.
+    /// The worst of tilted lobes where a G1 is 1: the lobe's projected area exceeds that of the
+    /// surface, its G1 is clamped, and f is not reciprocal.
     pub clamped: Option<Worst>,
 }
 
 impl Outcome {
-    /// Whether all pairs agree that should, and there were any.
+    /// Whether pairs were compared, and all agree that should.
     pub fn passed(&self) -> bool {
         // Written so that a NaN fails.
         self.pairs != [0; 2] && self.worst.is_none_or(|worst| worst.difference <= TOLERANCE)
     }
 }
 
-/// Compares f for `count` random pairs of directions of each configuration, but those that
-/// Turquin's factor compensates.
+/// Compares f for `count` random pairs of directions of each configuration, except those with
+/// Turquin's factor, which is not reciprocal.
 ///
 /// # Errors
 /// [`Unmade`] for a configuration whose BSDF cannot be made.
@@ -91,7 +91,7 @@ fn larger(a: Option<Worst>, b: Option<Worst>) -> Option<Worst> {
     }
 }
 
-/// A direction of the sphere.
+/// A direction, uniformly distributed over the sphere.
 fn direction(random: &mut StdRng) -> Vec3 {
     let (z, turn) = (random.random_range(-1.0..1.0_f64), random.random_range(0.0..1.0_f64));
     let (sin, cos) = (turn * std::f64::consts::TAU).sin_cos();
@@ -150,7 +150,7 @@ pub fn compare(
             (f, f64::from(f) / (index(v) * index(v)))
         };
         let ((there, a), (back, b)) = (f(v, l), f(l, v));
-        // Of a NaN neither holds.
+        // Both conditions are false for a NaN, which is therefore compared.
         if there <= least && back <= least || there == f32::MAX || back == f32::MAX {
             continue;
         }

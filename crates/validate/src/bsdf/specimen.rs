@@ -1,4 +1,4 @@
-//! BSDFs as data, from which they are made, printed and baked for.
+//! BSDFs as data: they can be made, printed, and have their albedos baked.
 
 use std::fmt;
 
@@ -18,17 +18,17 @@ use microfacet_tables::Precision;
 pub enum LobeOf {
     /// From the default tables.
     StudentT,
-    /// The same, prepared for reflection.
+    /// From the default tables, with normals bounded for reflection.
     Bounded,
     /// In closed form; γ is 2.
     Ggx,
-    /// Tilted and turned by angles.
+    /// Tilted and turned by three angles, radians.
     Ellipsoid([f64; 3]),
     /// σ = 0.
     Smooth,
 }
 
-/// What light meets.
+/// The kind of a surface, with its reflectance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Surface {
     /// A conductor with F = 1.
@@ -52,7 +52,7 @@ pub struct Specimen {
     pub sigma: [f32; 2],
     /// γ.
     pub gamma: f64,
-    /// What light meets.
+    /// The surface.
     pub surface: Surface,
     /// The form of masking.
     pub masking: Masking,
@@ -95,11 +95,11 @@ impl Specimen {
         })
     }
 
-    /// The same with another γ within the family; GGX becomes a Student-t.
+    /// The specimen with γ times `factor`, within the family; GGX becomes a Student-t.
     #[must_use]
     pub fn reshaped(self, factor: f64) -> Self {
         let lobe = if self.lobe == LobeOf::Ggx { LobeOf::StudentT } else { self.lobe };
-        // Not below the limit of the default tables. Beckmann times anything is Beckmann.
+        // At least the smallest γ of the default tables; γ = ∞ stays ∞.
         Self { lobe, gamma: (self.gamma * factor).max(GAMMA_MIN), ..self }
     }
 
@@ -144,8 +144,7 @@ impl Specimen {
         }
     }
 
-    /// The index of refraction whose albedos are needed, of a round lobe of this σ; `None` if none
-    /// are.
+    /// σ and η of the albedos that are needed, of a round lobe; `None` if none are.
     fn wanted(&self) -> Option<[f64; 2]> {
         let eta = match self.surface {
             Surface::Dielectric(eta) if self.compensation != Compensation::None => eta,
@@ -175,7 +174,7 @@ pub fn recipe(specimens: &[Specimen]) -> String {
              fresnel = {{ dielectric = {eta} }}\nmasking = \"{masking}\"\n"
         )
     };
-    // One for each interface: specimens may share it.
+    // Specimens may share an interface, whose albedos are baked once.
     let mut wanted: Vec<([f64; 2], &Specimen)> = Vec::new();
     for specimen in specimens {
         let Some(interface) = specimen.wanted() else { continue };

@@ -7,7 +7,6 @@ use microfacet_sampler::{
 
 /// Indices of refraction, among them both ends of the allowed range, and 1.
 const ETAS: [f64; 8] = [1e-3, 0.5, 1.0, 1.000_02, 1.05, 1.5, 2.4, 1e3];
-/// The BSDFs of one lobe.
 pub(super) struct Bsdfs {
     pub(super) conductors: Vec<Conductor<Lobe, 1>>,
     pub(super) dielectrics: Vec<(f32, Dielectric<Lobe, 1>)>,

@@ -56,13 +56,13 @@ pub(super) fn check(
         return Ok(());
     }
     let tabulated = tables.student_t(sigma, gamma)?;
-    // A peeled table leaves less than everything at grazing.
+    // A table whose heavy part is peeled holds less than all normals at grazing.
     let rises = tabulated.tabulated_share(Vec3::X) == 1.0;
     let bounded = tabulated.clone().bounded();
     let mut checker = Checker::new(tabulated.into(), sigma, gamma, rises, report)?;
     checker.views(&views);
     checker.complete(tables, &views);
-    // Any matrix will do, since each is replaced.
+    // The matrix is arbitrary: `ellipsoids` replaces it.
     let lobe = tables.ellipsoid(Skew::new([1.0, 1.0], [0.0; 3])?, gamma)?;
     let forms = Masking::ALL;
     // A roughness outside the table, or a set without albedo, has none to check.
@@ -99,7 +99,7 @@ impl<'a> Checker<'a> {
     /// Tests the BSDFs of the lobe at some views.
     fn complete(&mut self, tables: &Tables, views: &[Vec<Point>]) {
         let bsdfs = Bsdfs::new(&self.lobe, tables);
-        // Not the views that other derived tests take.
+        // From the second view on: the derived tests take the first of each four.
         for (i, points) in views.iter().enumerate().skip(1).step_by(COMPLETE_EVERY) {
             self.bsdfs(&bsdfs, points, i);
         }
@@ -178,13 +178,12 @@ impl Checker<'_> {
         self.density(area, "model inverse_area negative, NaN or inf", at);
         self.report.region(at).errors[0].see((g1 - truth).abs(), at);
 
-        // A little further from the normal, one per cent further, and half as far again.
         for factor in [1.0 + 1e-6, 1.01, 1.5] {
             let theta = (at.theta * factor).min(std::f64::consts::PI);
             let further = f64::from(self.lobe.g1(direction(theta, at.phi)));
             self.require(further <= g1 + ULP4, "g1 rises with theta", further - g1, at);
         }
-        // Any other direction will do for the light.
+        // The light is an arbitrary other direction.
         let l = direction(1.5 * f64::from(at.u[1]), at.phi + 2.0);
         for masking in Masking::ALL {
             let (g2, swapped) = (self.lobe.g2(v, l, masking), self.lobe.g2(l, v, masking));
@@ -194,8 +193,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Tests a sampled normal and the densities at it. `last` is the tilt at the random number
-    /// before.
+    /// Tests a sampled normal and its densities. `last` is the tilt at the previous random number.
     fn normal(&mut self, at: &Point, last: &mut f64) {
         self.report.region(at).points += 1;
         let v = at.view();
@@ -224,7 +222,7 @@ impl Checker<'_> {
         self.density(truth[0], "model d negative, NaN or inf", at);
         self.density(truth[1], "model pdf negative, NaN or inf", at);
         for (i, (got, want)) in [d, pdf].into_iter().zip(truth).enumerate() {
-            // Elsewhere f32 cannot hold it; and v·m at the silhouette is nothing but rounding.
+            // Outside this range f32 cannot hold it; at the silhouette v·m is mostly rounding.
             if (1e-30..1e30).contains(&want) && (i == 0 || facing > 1e-3) {
                 self.report.region(at).errors[1 + i].see((f64::from(got) / want - 1.0).abs(), at);
             }
@@ -242,7 +240,7 @@ impl Checker<'_> {
         let rho = ((sx * v.x) * (sx * v.x) + (sy * v.y) * (sy * v.y)).sqrt();
         let [sx, sy] = [sx, sy].map(f64::from);
         let (v, m) = (v.as_dvec3(), m.as_dvec3());
-        // The sampler treats such views as the normal, whose azimuth is arbitrary.
+        // The sampler treats these views as the normal, whose azimuth is arbitrary.
         let (vx, vy) = if rho < 1e-18 { (1.0, 0.0) } else { (sx * v.x, sy * v.y) };
         let rho = vx.hypot(vy);
         let (x, y) = (m.x / sx, m.y / sy);

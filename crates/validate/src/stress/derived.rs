@@ -68,7 +68,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Tests albedo and compensation at a view; the random number `u[1]` places the light.
+    /// Tests albedo and compensation at a view; the random number `u[1]` determines the light.
     pub(super) fn albedo(&mut self, albedo: &Albedo, at: &Point) {
         let v = at.view();
         self.share(albedo.albedo(v), "albedo outside [0, 1]", at);

@@ -1,5 +1,5 @@
-//! The textures and tables of GGX that engines read today, with values of the model: one entry a
-//! layout, with the axes and channels of its texels and the form of its file.
+//! The textures and tables of GGX that engines read today, with values of the model: one entry for
+//! each layout, with the axes and channels of its texels and the format of its file.
 
 mod image;
 mod text;
@@ -69,7 +69,7 @@ pub const LAYOUTS: [Layout; 10] = [
         engine: "openpbr-bsdf",
         size: [32, 32],
         advice: "put both files in place of those in impl/data; they are the metal's",
-        // The column of the horizon holds the values there.
+        // The column of the horizon holds the values at this cosine.
         axes: |size| ends(ROOT, Along::Cosine { least: 9.5e-4 }, size),
         masking: Masking::Uncorrelated,
         channels: &[Channel::Lost],

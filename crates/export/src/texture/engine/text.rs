@@ -8,7 +8,7 @@ use super::Texture;
 use crate::ExportFile;
 use crate::numbers::{as_typed, lines};
 
-/// What a texture is of, in a line.
+/// One line on the content of a texture.
 fn provenance(texture: &Texture) -> String {
     let spec = &texture.spec;
     let size: Vec<String> = texture.size().iter().map(usize::to_string).collect();

@@ -1,4 +1,4 @@
-//! What a texture is, as JSON: beside it, and inside the formats that can hold it.
+//! The description of a texture as JSON: a file, and inside the formats that can hold it.
 
 use serde_json::{Map, Value, json};
 
@@ -8,7 +8,7 @@ use super::Made;
 use crate::numbers::{as_typed, single};
 use crate::texture::{Along, Channel, Deviation, Place, Texture, shader_lines};
 
-/// The description, without what does not apply.
+/// The description, without entries that do not apply.
 pub(super) fn description(made: &Made) -> Map<String, Value> {
     let (texture, spec) = (&made.texture, &made.texture.spec);
     let average = !spec.is_directional();
@@ -88,7 +88,7 @@ fn along(along: Along, gamma: f64) -> Value {
     }
 }
 
-/// Three digits are enough of an error.
+/// An error in three digits.
 fn rounded(x: f64) -> Value {
     read(&format!("{x:.2e}"))
 }
@@ -106,7 +106,7 @@ fn at(place: &Place) -> Value {
     at
 }
 
-/// A place in four digits.
+/// A coordinate in four digits.
 fn short(x: f64) -> Value {
     read(&format!("{x:.3e}"))
 }
@@ -120,7 +120,7 @@ pub(super) fn compact(description: &Map<String, Value>) -> String {
 pub(super) fn text(description: Map<String, Value>, values: Option<&Texture>) -> String {
     let mut text = serde_json::to_string_pretty(&description).expect("names and numbers");
     if let Some(texture) = values {
-        // A number a line would be long to scroll.
+        // All numbers on one line: one on each would make a very long file.
         let numbers: Vec<String> = texture.values.iter().map(|&x| single(x)).collect();
         text.truncate(text.len() - "\n}".len());
         text += &format!(",\n  \"data\": [{}]\n}}", numbers.join(", "));

@@ -7,8 +7,8 @@ use crate::numbers::{as_typed, lines, single};
 use crate::texture::shader::Dialect;
 use crate::texture::{Along, Channel, shader_lines};
 
-/// The header: `NAME_texels`, the values, and `NAME_read`, which interpolates them. With a word
-/// behind it no name is one of the language, of `<math.h>` or of a variable here.
+/// The header: `NAME_texels`, the values, and `NAME_read`, which interpolates them. Their suffixes
+/// keep names from being keywords, or names of `<math.h>` or of local variables.
 pub(super) fn encode(made: &Made) -> String {
     let (texture, spec) = (&made.texture, &made.texture.spec);
     let name = &spec.name;

@@ -41,7 +41,7 @@ impl Format {
     }
 }
 
-/// A texture with what was measured.
+/// A texture with its measured errors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Made {
     /// The texture.
@@ -80,7 +80,7 @@ pub fn files(formats: &[Format], made: &[Made]) -> Result<Vec<ExportFile>, Strin
                 Format::Ktx2 => ktx2::encode(&made.texture, Some(&compact())),
                 Format::Npy => npy::encode(&made.texture)?,
                 Format::C => header::encode(made).into_bytes(),
-                // Below, with the values.
+                // Written after the other formats, with the values.
                 Format::Json => continue,
             };
             files.push(ExportFile::new(format!("{name}.{}", format.extension()), contents));
