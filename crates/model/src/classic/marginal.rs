@@ -147,7 +147,7 @@ impl<'a> Marginal<'a> {
 pub struct Across<'a> {
     marginal: &'a Marginal<'a>,
     x: f64,
-    /// ∫ P22 over half of them.
+    /// ∫ P22 over the slopes across y > 0.
     half: f64,
 }
 

@@ -59,14 +59,13 @@ fn apart<const N: usize>(a: &Albedo<N>, b: &Albedo<N>) -> f64 {
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, worst)
 }
 
-/// Asserts that two numbers differ by less than a tolerance.
 #[track_caller]
 fn assert_near(got: f64, want: f64, tolerance: f64, at: impl Display) {
     let error = (got - want).abs();
     assert!(error < tolerance, "{at}: {got} against {want}, off by {error:e} of {tolerance:e}");
 }
 
-/// Asserts that the parts of E add up to a share, but for `slack`.
+/// Asserts that E = scale + bias lies in [0, 1 + `slack`].
 #[track_caller]
 fn assert_share(albedo: &Albedo<2>, slack: f64, at: impl Display) {
     for form in Masking::ALL {
