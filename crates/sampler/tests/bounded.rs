@@ -60,8 +60,8 @@ fn bounding_changes_no_mean_and_lowers_the_variance() {
                 }
             }
             let what = format!("{:?} {} {v}: {means:?}", material.sigma(), material.gamma());
-            // The midpoint rule errs at a jump along a curve by a part of the cells that the curve
-            // crosses.
+            // The midpoint rule errs at a jump along a curve by a fraction of the cells that the
+            // curve crosses.
             assert!((means[0] - means[1]).abs() < 2.0 / f64::from(n), "{what}");
             let variance = |i: usize| squares[i] - means[i] * means[i];
             assert!(variance(1) <= variance(0) + 0.01, "{what} {} {}", variance(0), variance(1));

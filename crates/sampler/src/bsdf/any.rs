@@ -1,4 +1,4 @@
-//! Any of the BSDFs, and those of a recipe's materials by name.
+//! Any of the BSDFs, and the BSDF of a recipe's material by name.
 
 use glam::Vec3;
 

@@ -1,4 +1,4 @@
-//! A table's γ axis collapsed at one shape, which leaves the slice that lookups read.
+//! Slices of tables: the γ axis collapsed at one shape, as lookups read them.
 
 use alloc::vec::Vec;
 
@@ -35,9 +35,10 @@ impl<'a> Slice<'a> {
     }
 }
 
-/// Lets both halves of a row end at one slope at u = ½, where they store 1 + h and 1 − h.
+/// Makes both halves of a row, which store 1 + h and 1 − h, end at one slope at u = ½.
 ///
-/// Rounding to 16 bits parts them by up to 1e-3, which the samples would leave out or draw twice.
+/// Rounding to 16 bits separates the ends by up to 1e-3, a gap that samples would leave out or draw
+/// twice.
 fn join(row: &mut [Node]) {
     let (low, high) = row.split_at_mut(row.len() / 2);
     let ([.., before, low], [.., beyond, high]) = (low, high) else { return };
@@ -47,8 +48,8 @@ fn join(row: &mut [Node]) {
     low[0] = 2.0 - high[0];
 }
 
-/// Spreads the first nodes of an axis where they are one number, as rounding to 16 bits makes them
-/// next to an end: all the random numbers between would draw one slope, and no density has that.
+/// Spreads the first nodes of an axis where they are equal, as rounding to 16 bits makes them next
+/// to an end: all random numbers between them would draw one slope, which no density describes.
 fn spread(nodes: &mut [Node]) {
     let Some(&[first, _]) = nodes.first() else { return };
     let Some(count) = nodes.iter().position(|node| node[0] > first) else { return };
@@ -67,7 +68,7 @@ fn pairs(values: &[f32]) -> Vec<Node> {
 #[derive(Clone, Debug)]
 pub(crate) struct Slices {
     /// G1/q over the number of cells, by cell of the view coordinate, so that the coordinate in
-    /// cells needs no scaling of its own.
+    /// cells needs no further scaling.
     pub(crate) shadowing: Vec<Cell>,
     /// Cells of the view axis of G1.
     pub(crate) shadowing_cells: f32,
@@ -77,7 +78,8 @@ pub(crate) struct Slices {
     /// In-plane slopes: rows by view, each of `2 (cells + 1)` nodes with the half for u ≤ ½ first;
     /// then a row and a node that are read with weight 0.
     pub(crate) slope: Vec<Node>,
-    /// Cells of the view axis of slopes, its coordinate, and that in cells as lookups form it.
+    /// Cells of the view axis of slopes, its coordinate, and the coordinate in cells as lookups
+    /// compute it.
     pub(crate) rows: usize,
     pub(crate) view: HalfTangent,
     pub(crate) lines: Lines,
@@ -172,7 +174,7 @@ impl Slices {
         }
     }
 
-    /// The coordinate of one view in rows, to rounding as the sampler has it.
+    /// The coordinate of one view in rows, equal to the sampler's to rounding.
     #[inline(always)]
     pub(crate) fn row(&self, rho: f32, z: f32) -> f32 {
         let [rho, z, length] = [rho, z, sqrt(rho * rho + z * z)].map(f32x4::splat);
@@ -208,7 +210,7 @@ impl Slices {
 }
 
 /// The first table of one of `kinds` that covers s, and its weights; earlier kinds are preferred,
-/// and tables that hold s itself to those that end beside it.
+/// and tables that hold s to those that end within rounding of it.
 fn find<'a>(
     tables: &'a [Table],
     kinds: &[Kind],
