@@ -36,8 +36,8 @@ use crate::tables::Tables;
 /// density has a pole. These facets, of m·n below 3e-6 (1 + η)/|1 − η|, are *only sampled*: their
 /// light is flagged as a delta and has its whole weight, and f and density are those of the other
 /// facets alone. So a renderer that weights by densities stays unbiased, as for a mirror. Of light
-/// transmitted at 50° into glass (η = 1.5, σ = 0.3) that is 12 % at γ = 1.55, 0.65 % at 1.65, 0.02
-/// % at 1.8, and 94 % at 1.501, as the example `steep_facets` prints.
+/// transmitted at 50° into glass (η = 1.5, σ = 0.3) that is 94 % at γ = 1.501, 12 % at 1.55, 0.65 %
+/// at 1.65 and 0.02 % at 1.8, as the example `steep_facets` prints.
 #[derive(Clone, Debug)]
 pub struct Dielectric<L, const N: usize = 3> {
     lobe: L,
