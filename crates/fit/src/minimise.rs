@@ -64,7 +64,6 @@ fn inside(point: &[f64]) -> Vec<f64> {
     point.iter().map(|y| y.clamp(0.0, 1.0)).collect()
 }
 
-/// A function of one coordinate, for the minimiser.
 struct Line<F>(F);
 
 impl<F: Fn(&[f64]) -> f64> CostFunction for Line<F> {
@@ -76,7 +75,6 @@ impl<F: Fn(&[f64]) -> f64> CostFunction for Line<F> {
     }
 }
 
-/// A function on the square, for the minimiser.
 struct Square<F>(F);
 
 impl<F: Fn(&[f64]) -> f64> CostFunction for Square<F> {

@@ -51,7 +51,6 @@ impl<'a> SlopeBelowHorizon<'a> {
         }
     }
 
-    /// 1 − CDF at the slope of `w`.
     pub(crate) fn complement(&self, w: AsinhSlope) -> f64 {
         if w <= self.w_a { 1.0 } else { (self.upper(w) / self.excess).clamp(0.0, 1.0) }
     }

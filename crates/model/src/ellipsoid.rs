@@ -62,7 +62,6 @@ pub(crate) struct View {
     pub(crate) sin_phi: f64,
 }
 
-/// The distribution of in-plane slopes that a view sees.
 enum InPlane<'a> {
     Above(VisibleSlope<'a>),
     Below(SlopeBelowHorizon<'a>),
@@ -231,7 +230,6 @@ impl MicrofacetDistribution for Ellipsoid {
     }
 }
 
-/// Turns by the azimuth given as (cos, sin).
 pub(crate) fn turn(m: DVec3, cos: f64, sin: f64) -> DVec3 {
     DVec3::new(m.x * cos - m.y * sin, m.x * sin + m.y * cos, m.z)
 }

@@ -43,7 +43,6 @@ pub(crate) struct End {
 }
 
 impl End {
-    /// An end near which the integrand does not vary quickly.
     pub(crate) const fn plain(at: f64) -> Self {
         Self { at, scale: f64::INFINITY }
     }

@@ -22,7 +22,6 @@ use crate::error::{ParameterError, check_cosine};
 use crate::fresnel::Dielectric;
 use crate::panels::{End, Gauss};
 
-/// One view of one interface.
 struct Pane<'a> {
     model: &'a AlbedoIntegrator,
     dielectric: Dielectric,
@@ -101,7 +100,6 @@ impl Pane<'_> {
         (strong && there && eta != 1.0).then(|| sin / ((eta - cos) * self.sigma))
     }
 
-    /// The integral along one ray of slopes from m = n.
     fn ray(&self, rule: &Gauss, phi: f64) -> [f64; 2] {
         let (View { cos, sin, .. }, eta) = (self.view, self.dielectric.eta());
         let a = self.sigma * self.sigma;

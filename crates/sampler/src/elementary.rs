@@ -93,7 +93,6 @@ pub(crate) fn exp2(x: f32x4) -> f32x4 {
     power * scale
 }
 
-/// The exponent of the least normal number.
 const LEAST_EXPONENT: f32 = -126.0;
 
 /// A number, or lanes of them: the formulas are written once for both.
@@ -104,7 +103,6 @@ impl Number for f32x4 {}
 /// log₂ of (1+t)/(1−t), 2 artanh(t)/ln 2, over t, by powers of t²: for |t| ≤ 0.2, to 3e-9.
 const HALF_TANGENT: [f32; 4] = [2.885_390_07, 0.961_802_25, 0.576_390_26, 0.439_189_35];
 
-/// log₂ of (1+t)/(1−t).
 #[inline(always)]
 fn log2_of_half_tangent<T: Number>(t: T) -> T {
     let y = t * t;

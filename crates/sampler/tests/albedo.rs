@@ -123,7 +123,6 @@ fn refused(set: &Tables, sigma: f64, gamma: f64, masking: Masking) -> String {
     message
 }
 
-/// The default set without some of its tables.
 fn without(drop: impl Fn(&Table) -> bool) -> Tables {
     let set = Tables::embedded();
     let kept = set.tables().iter().filter(|table| !drop(table)).cloned().collect();

@@ -33,7 +33,6 @@ fn weight(material: &StudentT, v: Vec3, m: Vec3) -> f64 {
     }
 }
 
-/// Midpoints of an n × n grid of the unit square.
 fn grid(n: u32) -> impl Iterator<Item = [f32; 2]> {
     let at = move |i: u32| (i as f32 + 0.5) / n as f32;
     (0..n).flat_map(move |i| (0..n).map(move |j| [at(i), at(j)]))

@@ -43,7 +43,6 @@ impl<'a> Target<'a> {
         Self::on(from, steps, end, steps as f64)
     }
 
-    /// The first `used` of `steps` steps up to `end`.
     fn on(from: &'a dyn Isotropic, used: usize, end: f64, steps: f64) -> Self {
         let theta: Vec<f64> = (0..used).map(|i| i as f64 * end / steps).collect();
         let d = theta.iter().map(|&t| from.d(t)).collect();
@@ -165,7 +164,6 @@ impl<'a> Target<'a> {
     }
 }
 
-/// Steps of a coarse scan along each parameter.
 fn scan(to: DistributionKind) -> usize {
     if to.dimension() == 1 { 200 } else { 48 }
 }

@@ -143,7 +143,6 @@ impl Measured {
         for (channel, values) in values.chunks_exact(CELLS).enumerate() {
             let scaled = |value: &[u8; 8]| SCALES[channel] * f64::from_le_bytes(*value);
             let values: Vec<f64> = values.iter().map(scaled).collect();
-            // NaN is not within the range.
             let taken = |x: &f64| (f64::MIN..=LARGEST).contains(x);
             if let Some(at) = values.iter().position(|x| !taken(x)) {
                 return Err(MerlError::Value(channel, cell(at), values[at]));

@@ -7,7 +7,6 @@ use rayon::prelude::*;
 use super::file::{DARKEST, MerlError};
 use super::samples::Samples;
 
-/// The Lambert term and F0 of a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Linear {
     /// In 1/sr: the albedo over π.
@@ -16,7 +15,6 @@ pub(super) struct Linear {
     pub(super) f0: f64,
 }
 
-/// The measured values at some samples, to be fitted.
 pub(super) struct Problem<'a> {
     samples: &'a Samples,
     values: [Vec<f64>; 3],

@@ -19,12 +19,10 @@ fn place(theta: f64) -> f64 {
     STEPS as f64 * (theta / LIMIT_DEGREES.to_radians()).sqrt()
 }
 
-/// The angle of a coordinate in the table of masking.
 fn angle(place: f64) -> f64 {
     LIMIT_DEGREES.to_radians() * (place / STEPS as f64).powi(2)
 }
 
-/// A direction at an angle from the normal.
 fn direction(theta: f64) -> DVec3 {
     let (sin, cos) = theta.sin_cos();
     DVec3::new(sin, 0.0, cos)
@@ -35,7 +33,6 @@ fn direction(theta: f64) -> DVec3 {
 pub(super) struct Samples {
     /// Index of each sample in a channel.
     pub(super) index: Vec<usize>,
-    /// Row of θ_h.
     row: Vec<usize>,
     /// Coordinates of view and light in the table of masking.
     places: Vec<[f64; 2]>,
@@ -84,7 +81,6 @@ impl Samples {
         self.index.len()
     }
 
-    /// The measured values of a file at the samples.
     pub(super) fn of(&self, measured: &Measured) -> [Vec<f64>; 3] {
         let of = |channel: &Vec<f64>| self.index.iter().map(|&at| channel[at]).collect();
         measured.channels.each_ref().map(of)

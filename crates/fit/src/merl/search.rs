@@ -26,7 +26,6 @@ const TOLERANCES: [f64; 3] = [1e-3, 1e-5, 1e-6];
 /// Most basins of a scan that are searched.
 const BASINS: usize = 3;
 
-/// The fitted kinds, in this order.
 const KINDS: [DistributionKind; 3] =
     [DistributionKind::Beckmann, DistributionKind::TrowbridgeReitz, DistributionKind::StudentT];
 
@@ -109,7 +108,6 @@ fn on_square(kind: DistributionKind, place: &[f64]) -> Vec<f64> {
     vec![place[0], z]
 }
 
-/// γ of a kind with one parameter.
 fn shape(kind: DistributionKind) -> f64 {
     if kind == DistributionKind::Beckmann { f64::INFINITY } else { 2.0 }
 }
@@ -125,7 +123,6 @@ fn at(kind: DistributionKind, place: &[f64]) -> (Named, StudentT) {
     (Named { kind, values }, lobe)
 }
 
-/// The error of every lobe against the samples of one file.
 struct Errors<'a> {
     samples: &'a Samples,
     problem: Problem<'a>,
@@ -230,7 +227,7 @@ mod tests {
         for (end, start) in [(0.0, 0.1), (1.0, 0.9)] {
             for kind in KINDS {
                 let mut at = vec![start; kind.dimension()];
-                // As `search` and `fit` go on from one to the next.
+                // The sequence of searches in `search` and `fit`.
                 for (h, tolerance) in [(0.2, TOLERANCES[1]), (0.01, 1e-6), (0.002, 1e-6)] {
                     let cost = |p: &[f64]| 1.0 + p.iter().map(|x| (x - end).abs()).sum::<f64>();
                     at = minimise::descend(&at, h, stop(tolerance), cost).unwrap();

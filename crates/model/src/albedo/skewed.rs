@@ -57,11 +57,9 @@ struct View {
     g1: f64,
 }
 
-/// The interval of slopes along the view, in w.
 struct Along {
     /// Where the integrand varies quickly, ascending, up to where the tail begins.
     stops: Vec<End>,
-    /// End of the tail.
     end: End,
 }
 
@@ -273,7 +271,6 @@ impl AlbedoIntegrator {
         })
     }
 
-    /// √(1 + s x²).
     fn stretch(&self, x: f64) -> f64 {
         (1.0 + self.shape.s() * x * x).sqrt()
     }

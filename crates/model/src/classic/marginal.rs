@@ -55,7 +55,6 @@ impl<'a> Marginal<'a> {
         self.reach
     }
 
-    /// The angles at which D has a corner.
     pub(crate) fn corners(&self) -> Vec<f64> {
         self.d.corners()
     }

@@ -123,7 +123,6 @@ impl Tabulated {
         PI * (constant + ramp)
     }
 
-    /// The segment that holds θ.
     fn at(&self, theta: f64) -> usize {
         self.theta.partition_point(|&t| t <= theta).clamp(1, self.theta.len() - 1) - 1
     }

@@ -164,7 +164,6 @@ struct WorldGrid {
     sigma: [f64; 2],
     rings: Vec<f64>,
     share: Vec<f64>,
-    /// Whether the outermost ring is one cell.
     whole_last_ring: bool,
 }
 

@@ -27,7 +27,6 @@ fn rows(name: &str) -> Vec<Vec<String>> {
     rows
 }
 
-/// The factors of F0 and F90 in Schlick's reflectance.
 fn schlick(cos: f64) -> [f64; 2] {
     [1.0 - schlick_weight(cos), schlick_weight(cos)]
 }

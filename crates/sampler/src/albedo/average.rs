@@ -63,7 +63,6 @@ pub(super) fn add<const N: usize>(sum: &mut [f64; N], factor: f64, values: &[f64
     }
 }
 
-/// h of cos θ.
 fn half_tangent(cos: f64) -> f64 {
     cos / (1.0 + sqrt64((1.0 - cos) * (1.0 + cos)))
 }

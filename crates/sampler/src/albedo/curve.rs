@@ -28,12 +28,10 @@ pub(super) struct MaterialPoint {
     pub(super) eta: f64,
 }
 
-/// Weights along the axes of a material.
 pub(super) struct MaterialWeights {
     pub(super) weights: Vec<Weights>,
     /// The roughness at which the weights are taken, no less than the first node's.
     sigma: f64,
-    /// Whether σ is 0.
     pub(super) is_mirror: bool,
 }
 
@@ -180,7 +178,6 @@ pub(super) fn missing(table: &Table, point: &MaterialPoint) -> MaterialError {
 pub(super) struct Curve {
     /// The values at the nodes, azimuths slowest; channels that the table lacks are 0.
     nodes: Vec<[f32; CHANNELS]>,
-    /// The number of views at each azimuth.
     views: usize,
     view: View,
     /// The channel by which the others are clamped.
@@ -189,7 +186,6 @@ pub(super) struct Curve {
     moments: bool,
 }
 
-/// The coordinates of the views.
 #[derive(Clone, Copy, Debug)]
 enum View {
     /// A round lobe: the same at every azimuth.
@@ -281,7 +277,6 @@ impl Curve {
         }
     }
 
-    /// The channels of cos θ at some azimuths.
     pub(super) fn at(&self, rows: &Rows, view: &Elevation<'_>, cos: f32) -> [f32; CHANNELS] {
         self.interpolate(rows, view.six(cos, self.views))
     }

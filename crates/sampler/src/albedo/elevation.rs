@@ -3,7 +3,6 @@
 use microfacet_tables::axis::lagrange::{SIX, six};
 use microfacet_tables::axis::{PreparedCritical, PreparedView};
 
-/// The coordinate of views at one azimuth.
 pub(super) enum Elevation<'a> {
     Blend(&'a PreparedView),
     Critical(&'a PreparedCritical),

@@ -163,7 +163,6 @@ impl Tables {
         })
     }
 
-    /// The albedo of a material's own lobe under a reflectance.
     fn own<T>(
         &self,
         entry: &MaterialEntry,
@@ -254,7 +253,6 @@ fn domains<'a>(tables: impl Iterator<Item = &'a Table>) -> String {
     listed(tables.map(material))
 }
 
-/// The dielectrics of all tables, for each form of masking.
 fn dielectrics<'a>(tables: impl Iterator<Item = &'a Table>) -> String {
     let one = |table: &Table| {
         let indices = Range(table.subject.reflectance?.indices()?.into());

@@ -40,7 +40,6 @@ impl Moments {
         Self { scale: 1.0 - bias, bias, f82: f82_weight(cos_theta) }
     }
 
-    /// 2 ∫ μ dμ of a mirror's moments.
     pub(super) fn mirror_average() -> Self {
         Self {
             scale: (1.0 - SCHLICK_AVERAGE) as f32,

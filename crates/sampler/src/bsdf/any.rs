@@ -36,7 +36,6 @@ macro_rules! from {
 
 from!(Conductor, Dielectric, Plastic);
 
-/// Calls one function of whichever BSDF it is.
 macro_rules! each {
     ($any:ident, $one:ident => $call:expr) => {
         match $any {

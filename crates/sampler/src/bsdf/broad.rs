@@ -40,7 +40,6 @@ const fn square(end: usize) -> f64 {
 const SQUARES: [f32; BANDS + 1] = Broad::COSINE.shares;
 
 impl Broad {
-    /// cos θ/π alone.
     pub(super) const COSINE: Self = {
         let mut shares = [0.0; BANDS + 1];
         let mut end = 0;
@@ -128,7 +127,6 @@ impl Broad {
     }
 }
 
-/// The density of the cosine at a direction or its opposite.
 #[inline(always)]
 pub(super) fn cosine_pdf(l: Vec3) -> f32 {
     l.z.abs() * FRAC_1_PI

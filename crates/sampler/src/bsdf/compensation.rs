@@ -43,7 +43,6 @@ pub(super) fn kulla_conty(lost_v: f32, lost_l: f32, average: f32) -> f32 {
     if average > f32::MIN_POSITIVE { lost_v * lost_l / average } else { 0.0 }
 }
 
-/// The compensation of a conductor.
 #[derive(Clone, Debug)]
 pub(super) struct Returned<const N: usize> {
     albedo: Albedo,
@@ -90,7 +89,6 @@ impl<const N: usize> Returned<N> {
         self.albedo.lost(v)
     }
 
-    /// The factor on the lobe.
     #[inline]
     pub(super) fn factor(&self, lost: f32) -> [f32; N] {
         match &self.form {

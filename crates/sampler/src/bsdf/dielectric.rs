@@ -248,7 +248,6 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
         self.has_pole && refraction.is_some() && m.z < 2.0 * seen.face.steep()
     }
 
-    /// The light drawn by a facet of normal m.
     #[inline(always)]
     fn drawn(seen: &Seen, choice: f32, m: Vec3) -> Option<(Vec3, Sender)> {
         let facing = seen.v.dot(m);

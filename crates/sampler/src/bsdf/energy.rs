@@ -9,7 +9,6 @@ use super::interface::Interface;
 use crate::albedo::{DielectricAlbedo, fresnel_average};
 use glam::Vec3;
 
-/// The energy of one interface.
 #[derive(Clone, Debug)]
 pub(super) struct Energy {
     /// The albedos of one bounce; `None` of a smooth interface, which loses nothing.
@@ -50,7 +49,7 @@ pub(super) fn side(above: bool) -> usize {
 }
 
 impl Energy {
-    /// Of a smooth interface of index η, inside over outside.
+    /// The energy of a smooth interface of index η, inside over outside.
     pub(super) fn smooth(eta: f32) -> Self {
         // Averages are taken on the thin side, whose reflectance has no kink; the averages
         // transmitted from the two sides differ by η².
@@ -62,7 +61,8 @@ impl Energy {
         Self { albedo, compensation, eta, lost, transmitted, reflected, back }
     }
 
-    /// Of a rough interface whose albedos are those of the same lobe, index and form of masking.
+    /// The energy of a rough interface; the albedos must be those of its lobe, index and form of
+    /// masking.
     pub(super) fn rough(albedo: DielectricAlbedo, compensation: Compensation, eta: f32) -> Self {
         let sides = [&albedo.outside, &albedo.inside];
         // By the same formulas as single views, so that a white furnace closes.

@@ -21,7 +21,6 @@ pub(super) struct White {
     pub(super) cos: f32,
     /// f cos θ_l/pdf.
     weight: f32,
-    /// The density of the light.
     pub(super) pdf: f32,
 }
 
@@ -41,7 +40,6 @@ impl<L: MicrofacetDistribution> Facets<'_, L> {
         Some((l, White::new(self.lobe.facet(v, m, l, self.masking), share, facing / sqrt(length2))))
     }
 
-    /// The facet halfway between a view and a light.
     #[inline(always)]
     pub(super) fn halfway(&self, v: Vec3, l: Vec3) -> White {
         let m = v + l;

@@ -118,7 +118,6 @@ impl Interface {
         if !(length > 0.0) {
             return None;
         }
-        // m above the horizon.
         let scale = if h[2] < 0.0 { -1.0 / length } else { 1.0 / length };
         let m = Vec3::from(h.map(|x| (x * scale) as f32));
         let length = length as f32;

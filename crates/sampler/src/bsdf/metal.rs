@@ -244,7 +244,6 @@ mod tests {
         }
     }
 
-    /// Reflectance at normal incidence.
     fn colour(metal: Metal) -> [f64; 3] {
         let (eta, k) = (metal.eta(), metal.k());
         [0, 1, 2].map(|i| {

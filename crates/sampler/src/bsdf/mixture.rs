@@ -44,7 +44,6 @@ pub(super) struct Mixture<const N: usize> {
 }
 
 impl<const N: usize> Mixture<N> {
-    /// The density of the mixture.
     #[inline(always)]
     pub(super) fn pdf(&self) -> f32 {
         self.p * self.facets.pdf + (1.0 - self.p) * self.broad.pdf
@@ -62,7 +61,6 @@ impl<const N: usize> Mixture<N> {
     /// Both densities are divided by their sum first, so that nothing overflows.
     #[inline(always)]
     pub(super) fn weight(&self) -> [f32; N] {
-        // There is no broad lobe.
         if self.p == 1.0 {
             return self.facets.weight;
         }
@@ -89,7 +87,6 @@ pub(super) fn chosen(number: f32, p: f32) -> (bool, f32) {
     if number < p { (true, number / p) } else { (false, choice((number - p) / (1.0 - p))) }
 }
 
-/// Whether all components of two directions are finite.
 #[inline(always)]
 pub(super) fn are_finite(v: Vec3, l: Vec3) -> bool {
     (v.dot(v) + l.dot(l)).is_finite()

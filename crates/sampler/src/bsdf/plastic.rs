@@ -201,7 +201,6 @@ impl<L: MicrofacetDistribution, const N: usize> Plastic<L, N> {
         white.part([reflectance * self.energy.factor(shares); N])
     }
 
-    /// The coat's facet halfway between a view and a light.
     #[inline(always)]
     fn halfway(&self, shares: &Shares, v: Vec3, l: Vec3) -> Part<N> {
         // The reflection of a smooth coat is a delta.

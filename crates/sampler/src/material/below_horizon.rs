@@ -20,7 +20,6 @@ use crate::elementary::{exp2, log2};
 /// Up to this a the excess is a difference of values from the shadowing table, which loses digits
 /// beyond it.
 const NEAR: f32 = 0.8;
-/// Cells of [`ExcessShare`].
 const CELLS: usize = 32;
 /// Larger a are clamped to this one, whose square is within the range of f32.
 const DEEPEST: f32 = 1e15;

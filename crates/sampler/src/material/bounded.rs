@@ -227,7 +227,6 @@ impl Bounded {
         (low + w * (high - low)).clamp(0.0, 1.0)
     }
 
-    /// The intervals of four views.
     #[inline(always)]
     fn intervals_of(&self, [vx, vy, vz]: [f32x4; 3]) -> [f32x4; 2] {
         let (lobe, slices) = (&self.lobe, &self.lobe.slices);
@@ -358,7 +357,6 @@ impl Nodes {
     }
 }
 
-/// The number u ∈ [0, 1] of an interval.
 #[inline(always)]
 fn within(from: f32, share: f32, u: f32) -> f32 {
     (from + unit(u) * share).min(1.0)

@@ -25,7 +25,6 @@ pub(super) fn end_weights(table: &Table, s: f64) -> Option<Weights> {
     table.subject.lobe.contains_s(s).then(|| table.axes[0].weights(s.clamp(first, last)))?
 }
 
-/// Whether the table serves s.
 fn serves(table: &Table, s: f64) -> bool {
     shape_weights(table, s).or_else(|| end_weights(table, s)).is_some()
 }
@@ -76,7 +75,7 @@ fn intervals(table: &Table) -> Vec<[f64; 2]> {
     alloc::vec![table.subject.lobe.s()]
 }
 
-/// Ascending, with those joined that touch.
+/// Ascending intervals; those that touch are joined.
 fn united(mut all: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     all.sort_by(|a, b| a[0].total_cmp(&b[0]));
     all.dedup_by(|next, last| {

@@ -27,7 +27,6 @@ pub(crate) struct Heavy {
     pub(crate) shares: Vec<Cell>,
     /// 1/(2γ−3).
     pub(crate) exponent: f32,
-    /// √s.
     pub(crate) root_s: f32,
 }
 

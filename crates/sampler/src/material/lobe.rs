@@ -40,7 +40,6 @@ macro_rules! from {
 
 from!(StudentT, Ggx, Ellipsoid, Radial, Bounded, Smooth);
 
-/// Calls one function of whichever lobe it is.
 macro_rules! each {
     ($lobe:ident, $one:ident => $call:expr) => {
         match $lobe {

@@ -18,7 +18,6 @@ use crate::error::MaterialError;
 pub(crate) struct Slice<'a> {
     pub(crate) kind: Kind,
     pub(crate) nodes: Vec<Node>,
-    /// Axes of the table.
     pub(crate) axes: &'a [Axis],
 }
 
@@ -28,7 +27,6 @@ impl<'a> Slice<'a> {
         Self { kind: table.kind, nodes: pairs(&table.values), axes: &table.axes }
     }
 
-    /// The slice with these weights along the γ axis.
     fn at(table: &'a Table, weights: Weights) -> Self {
         let nodes = pairs(&table.collapsed(&[weights]));
         Self { kind: table.kind, nodes, axes: &table.axes }
@@ -64,7 +62,6 @@ fn pairs(values: &[f32]) -> Vec<Node> {
     values.chunks_exact(2).map(|node| [node[0], node[1]]).collect()
 }
 
-/// Slices of one shape.
 #[derive(Clone, Debug)]
 pub(crate) struct Slices {
     /// G1/q over the number of cells, by cell of the view coordinate, so that the coordinate in
@@ -85,7 +82,6 @@ pub(crate) struct Slices {
     pub(crate) lines: Lines,
     /// Cells of one half of the u₁ axis.
     pub(crate) half_cells: usize,
-    /// Whether `slope` is peeled.
     pub(crate) peeled: bool,
     /// Slopes across, the half for u > ½: by node, and by cell.
     pub(crate) across: Vec<Node>,
@@ -116,7 +112,7 @@ impl Slices {
         Ok(slices)
     }
 
-    /// From the slices of G1 and of in-plane slopes alone.
+    /// From the slices of G1 and of in-plane slopes; slopes across stay empty.
     pub(crate) fn new([shadowing, slope]: [Slice; 2], s: f64) -> Self {
         let (Mapping::Rational(shadowing_view), [.., view, numbers]) =
             (shadowing.axes[shadowing.axes.len() - 1].mapping, slope.axes)
@@ -152,7 +148,6 @@ impl Slices {
         }
     }
 
-    /// Nodes of half a row of `slope`.
     #[inline(always)]
     pub(crate) fn half(&self) -> u32 {
         self.half_cells as u32 + 1
@@ -201,7 +196,6 @@ impl Slices {
         self.kappa / (self.shadowing[0][0] * self.shadowing_cells)
     }
 
-    /// Bytes that lookups of this lobe touch.
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(&self.shadowing[..])
             + size_of_val(&self.slope[..])

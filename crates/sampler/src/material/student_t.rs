@@ -105,7 +105,6 @@ impl StudentT {
         Self::new([sigma; 2], 2.0, slices)
     }
 
-    /// Computes everything that does not depend on a direction.
     fn new([sigma_x, sigma_y]: [f32; 2], gamma: f64, slices: Slices) -> Self {
         let s = s_of_gamma(gamma);
         Self {

@@ -37,7 +37,6 @@ pub(super) struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    /// One row.
     fn one(row: &'a [Node]) -> Self {
         Self { low: row, high: row, between: 0.0 }
     }
@@ -69,7 +68,6 @@ impl<'a> Rows<'a> {
 /// Where the interpolated inverse CDF of one half of a mirrored axis takes a value.
 struct Cell {
     cell: usize,
-    /// Reciprocal of the number of cells.
     width: f64,
     g: f64,
     nodes: [Node; 2],
@@ -248,7 +246,6 @@ impl StudentT {
         if half == 0 { u } else { 1.0 - u }
     }
 
-    /// A row of the table.
     pub(super) fn row(&self, row: usize) -> Rows<'_> {
         let stride = 2 * (self.slices.half_cells + 1);
         Rows::one(&self.slices.slope[row * stride..(row + 1) * stride])

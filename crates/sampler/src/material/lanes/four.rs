@@ -22,7 +22,6 @@ use crate::material::heavy::parts;
 use crate::material::horizon::HORIZON;
 use crate::material::student_t::StudentT;
 
-/// Directions of a group.
 pub(crate) const LANES: usize = 4;
 /// How many groups of four go through each stage together.
 const GROUPS: usize = 8;
@@ -107,7 +106,6 @@ impl StudentT {
         Located { views, silhouette, row, between, number, heavy, along, across }
     }
 
-    /// The in-plane slopes and the slopes across.
     #[inline(always)]
     fn look_up<const HEAVY: bool>(&self, at: &Located) -> Slopes {
         let slices = &self.slices;
@@ -209,7 +207,7 @@ impl Number {
     }
 }
 
-/// As [`face`](crate::material::horizon::face) for one.
+/// [`face`](crate::material::horizon::face) for four normals.
 #[inline(always)]
 fn facing(m: [f32x4; 3], [vx, vy, vz]: [f32x4; 3]) -> [f32x4; 3] {
     let vz = vz & vz.simd_gt(0.0);

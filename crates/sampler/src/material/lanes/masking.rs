@@ -17,7 +17,6 @@ fn g1_of_nan<T: Default>() -> T {
 }
 
 impl StudentT {
-    /// G1 of one view.
     #[inline(always)]
     pub(crate) fn g1_of_one(&self, v: Vec3) -> f32 {
         // As `inverse_area`, without the azimuth, and with κ folded into the roughness. The chain

@@ -13,7 +13,6 @@ pub(crate) mod views;
 use glam::Vec3;
 use wide::f32x4;
 
-/// The vector of the first three lanes.
 #[inline(always)]
 pub(crate) fn first_three(m: f32x4) -> Vec3 {
     let [x, y, z, _] = m.to_array();

@@ -156,7 +156,6 @@ impl StudentT {
         if !clear {
             return None;
         }
-        // The norm √(z² + s x²).
         let norm = (z * z + f32x4::splat(4.0 * self.s) * (x * x)).sqrt();
         Some((pairs_of_firsts(x, z) * ahead + norm * aside, shrink))
     }
@@ -184,7 +183,6 @@ pub(crate) fn start(row: u32, stride: u32, cell: i32) -> usize {
     (row.wrapping_mul(stride).wrapping_add(cell as u32) & (u32::MAX >> 1)) as usize
 }
 
-/// The two nodes from `at` on.
 #[inline(always)]
 pub(crate) fn pair(nodes: &[Node], at: usize) -> f32x4 {
     let [a, b] = [nodes[at], nodes[at + 1]];

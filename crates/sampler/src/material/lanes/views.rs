@@ -33,7 +33,6 @@ fn upright(x: f32, y: f32, z: f32) -> [f32; 6] {
 }
 
 impl StudentT {
-    /// A view, stretched and located in the table.
     #[inline(always)]
     pub(crate) fn view<const HEAVY: bool>(&self, v: Vec3) -> View {
         let sigma = f32x4::new([self.sigma_x, self.sigma_y, 0.0, 0.0]);
