@@ -163,10 +163,10 @@ impl StudentT {
 
 /// How far, in g, a normal must be from the silhouette so that no rounding can hide it.
 ///
-/// With g₀ the silhouette and t half the tangent of the tilt across, v·m = (g − g₀)(ρ + …)
-/// ρ/|m| ≥ (g − g₀) ρ length/|m| must exceed ten roundings of terms that sum to at most ρ length
-/// (3 + 6
-/// |t|)/|m|, whatever σ is. The margin also keeps normals off the horizon and all squares in range.
+/// With g₀ the silhouette and t half the tangent of the tilt across,
+/// v·m = (g − g₀)(ρ + …) ρ/|m| ≥ (g − g₀) ρ length/|m| must exceed ten roundings of terms that sum
+/// to at most ρ length (3 + 6 |t|)/|m|, whatever σ is. The margin also keeps normals off the
+/// horizon and all squares in range.
 const SILHOUETTE_MARGIN: f32 = 2e-6;
 /// The part of the margin that grows with |t|.
 const SILHOUETTE_MARGIN_ACROSS: f32 = 4e-6;
