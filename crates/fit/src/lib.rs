@@ -1,14 +1,14 @@
-//! One distribution for another, or for a measurement.
+//! Fits and conversions: a distribution for another one, or for a measurement.
 //!
 //! [`fit`] finds the Student-t, Beckmann and GGX nearest to a measured distribution of normals, and
-//! [`merl`] those nearest to a reflectance, in the format of the MERL database; it says how much
-//! worse the two classics are, and writes a recipe of what it found.
+//! [`merl`] those nearest to a reflectance, in the format of the MERL database; it compares the
+//! errors of the three, and writes a recipe of the fits.
 //!
 //! [`convert`] replaces one distribution by another: by its half angle, by the least error of D, or
-//! by a published formula, each with what it costs. Sawicki's table 2 is there beside ours.
+//! by a published formula, each with its error. It also recomputes Sawicki's table 2.
 //!
 //! Both search by the minimiser of `argmin`, in coordinates in which every parameter has about the
-//! same effect on D, and say so where an end of the range is the best.
+//! same effect on D, and report parameters at an end of their range.
 
 pub mod convert;
 pub mod merl;
@@ -20,7 +20,7 @@ use microfacet_model::classic::Tabulated;
 
 use crate::convert::{ConvertError, Form, Replacement, Target};
 
-/// The best Student-t, and its two well-known special cases for comparison.
+/// The best Student-t, and for comparison the best of its special cases Beckmann and GGX.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
     /// σ and γ fitted together.

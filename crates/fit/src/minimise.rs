@@ -27,7 +27,7 @@ pub(crate) struct Stop {
 }
 
 /// Searches for a minimum near `start`, within `h` in one coordinate, from a simplex of sides 0.4 h
-/// in two, and returns where it is. A cost that is no number counts as `f64::MAX`.
+/// in two, and returns where it is. A cost of NaN counts as `f64::MAX`.
 pub(crate) fn descend(
     start: &[f64],
     h: f64,
@@ -48,7 +48,7 @@ pub(crate) fn descend(
             .map_err(failed)?;
         return Ok(vec![*run.state().get_best_param().unwrap_or(&start[0])]);
     };
-    // Away from an edge of the square, where the simplex would be flat.
+    // Off the edges of the square, where the simplex would be flat.
     let [x, y] = [x, y].map(|c| c.clamp(0.5 * h, 1.0 - 0.5 * h));
     let simplex = vec![vec![x, y], vec![x + 0.4 * h, y], vec![x, y + 0.4 * h]];
     let solver = NelderMead::new(simplex).with_sd_tolerance(stop.spread).map_err(failed)?;
@@ -64,7 +64,6 @@ fn inside(point: &[f64]) -> Vec<f64> {
     point.iter().map(|y| y.clamp(0.0, 1.0)).collect()
 }
 
-/// A function of one coordinate, as the minimiser calls it.
 struct Line<F>(F);
 
 impl<F: Fn(&[f64]) -> f64> CostFunction for Line<F> {
@@ -76,7 +75,6 @@ impl<F: Fn(&[f64]) -> f64> CostFunction for Line<F> {
     }
 }
 
-/// A function on the square.
 struct Square<F>(F);
 
 impl<F: Fn(&[f64]) -> f64> CostFunction for Square<F> {

@@ -49,8 +49,8 @@ pub struct AlbedoIntegrator {
     pub(crate) tolerance: f64,
     /// Asinh slope at which integrals over the lobe are cut off.
     pub(crate) cut: f64,
-    /// The same across the view, where tails are shorter: the share is less than
-    /// cosh^(−2k−1) √s w.
+    /// Asinh slope of the cut across the view, where tails are shorter: the share beyond w is less
+    /// than cosh^(−2k−1) √s w.
     cut_across: f64,
 }
 
@@ -113,9 +113,8 @@ impl AlbedoIntegrator {
         }
     }
 
-    /// ∫ π P22(r) r² dr beyond the largest rapidity, where integrals over heavy tails are cut off
-    /// before they are negligible: the power law r^(−2k−1), k = γ − 3/2, has no end. `None` where
-    /// they are.
+    /// ∫ π P22(r) r² dr beyond the largest rapidity, where integrals over heavy tails, r^(−2k−1)
+    /// with k = γ − 3/2, are cut off before the rest is negligible. `None` where it is negligible.
     pub(crate) fn tail(&self) -> Option<f64> {
         let (s, k) = (self.shape.s(), self.shape.gamma() - 1.5);
         let heavy = s > 0.0 && self.cut * s.sqrt() >= LARGEST_RAPIDITY;
@@ -145,7 +144,7 @@ impl AlbedoIntegrator {
         self.reflection_to(self.tolerance, sigma, cos_theta, weight)
     }
 
-    /// The same with another error aimed at, no smaller than the one it was prepared for.
+    /// [`reflection`](Self::reflection) to a tolerance no smaller than that of the integrator.
     fn reflection_to<const N: usize>(
         &self,
         tolerance: f64,
@@ -197,7 +196,7 @@ impl AlbedoIntegrator {
         Ok(self.converged(self.tolerance, &view, weight))
     }
 
-    /// The integral of one view at the first order that is accurate enough, or else the last.
+    /// The albedos of one view at the first order that is accurate enough, or else the last.
     fn converged<const N: usize>(
         &self,
         tolerance: f64,
@@ -210,7 +209,8 @@ impl AlbedoIntegrator {
         self.refined(tolerance, view.kink > 0.0, |rule| self.quadrature(rule, view, &weight))
     }
 
-    /// The same for any `quadrature`; `kink` says whether a kink lies inside its domain.
+    /// The albedos by `quadrature` at the first order that is accurate enough, or else the last;
+    /// `kink` says whether a kink lies inside its domain.
     pub(crate) fn refined<const N: usize>(
         &self,
         tolerance: f64,
@@ -263,7 +263,8 @@ impl AlbedoIntegrator {
     /// Whether the branch point of Λ(l) at l = n, which the unit slope `r_normal` reflects to, is
     /// strong enough to need panels of its own.
     fn branches(&self, sigma: f64, r_normal: f64) -> bool {
-        // Around it l turns by 2σ per unit slope; what is masked there, times the density.
+        // Near that slope l turns by 2σ per unit slope. What counts is the share masked there,
+        // times the density.
         let reach = r_normal.max(1.0);
         let masked = 1.0 - self.smith.g1(1.0, libm::pow(2.0 * sigma * sigma * reach, 2.0));
         let square = r_normal * r_normal;
@@ -348,9 +349,9 @@ impl AlbedoIntegrator {
         })
     }
 
-    /// The same for a ray whose slope per unit slope has the square a and is b/sin θ away from the
-    /// view; `aside` is the sine of the angle to the branch point's ray. `across` gives the light's
-    /// squared horizontal length, stretched by σ, from its cosine, r and 2v·m/|m|².
+    /// The integral along a ray whose slope per unit slope has the square a and is b/sin θ away
+    /// from the view; `aside` is the sine of the angle to the branch point's ray. `across` gives
+    /// the light's squared horizontal length, stretched by σ, from its cosine, r and 2v·m/|m|².
     fn along_ray<const N: usize>(
         &self,
         rule: &Gauss,
@@ -393,8 +394,8 @@ impl AlbedoIntegrator {
             rule.graded(from, to, PANEL, |w, jacobian| points.push([w, jacobian, 0.0, 0.0]));
             from = to;
         }
-        // One pass over all points for each part of the formula: so the processor works on several
-        // points at a time.
+        // One pass over all points for each step of the formula, so that several points are
+        // computed at a time.
         for point in &mut points {
             let (r, measure) = self.slopes.at(point[0]);
             *point = [r, point[1] * measure, 0.0, 0.0];
@@ -420,7 +421,7 @@ impl AlbedoIntegrator {
             && b < 0.0
             && let Some(tail) = self.tail()
         {
-            // At grazing height-correlated masking (G2/G1 = 1) keeps all of it.
+            // At grazing height-correlated masking (G2/G1 = 1) keeps all of the tail.
             let fresnel = weight(-b / a.sqrt());
             for i in 0..N {
                 sum[1][i] -= b * tail * fresnel[i];

@@ -1,8 +1,8 @@
 //! Visible slopes for views below the horizon of the lobe, which occur for skewed lobes only.
 //!
-//! A view whose unit cotangent is −a sees the slopes x > a with density ∝ (x − a) p(x). It is what
-//! remains of [`VisibleSlope`](crate::VisibleSlope) when the view passes below the horizon; it has
-//! formulas of its own because those for views above would subtract nearly equal areas.
+//! A view whose unit cotangent is −a sees the slopes x > a with density ∝ (x − a) p(x). The
+//! formulas of [`VisibleSlope`](crate::VisibleSlope), for views above the horizon, would subtract
+//! nearly equal areas here.
 
 use crate::shape::{AsinhSlope, Shape};
 use crate::visible::solve_decreasing;
@@ -51,7 +51,6 @@ impl<'a> SlopeBelowHorizon<'a> {
         }
     }
 
-    /// 1 − CDF at the slope of `w`.
     pub(crate) fn complement(&self, w: AsinhSlope) -> f64 {
         if w <= self.w_a { 1.0 } else { (self.upper(w) / self.excess).clamp(0.0, 1.0) }
     }

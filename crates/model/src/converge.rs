@@ -43,7 +43,6 @@ impl<const N: usize> Albedo<N> {
     }
 }
 
-/// Adds a multiple of integrals to a sum.
 #[inline]
 pub(crate) fn add<const N: usize>(sum: &mut Both<N>, factor: f64, part: &Both<N>) {
     for (sum, part) in sum.iter_mut().flatten().zip(part.iter().flatten()) {
@@ -51,7 +50,7 @@ pub(crate) fn add<const N: usize>(sum: &mut Both<N>, factor: f64, part: &Both<N>
     }
 }
 
-/// Adds the weights of one place to a sum, times the share of it under each form of masking.
+/// Adds the weights at one quadrature point, times its share under each form of masking.
 #[inline]
 pub(crate) fn add_place<const N: usize>(sum: &mut Both<N>, shares: [f64; 2], weights: [f64; N]) {
     for i in 0..N {
@@ -68,7 +67,6 @@ pub(crate) fn largest<const N: usize>(values: &Both<N>) -> f64 {
     values.iter().flatten().copied().fold(0.0, f64::max)
 }
 
-/// The rules of all orders.
 pub(crate) fn rules() -> Vec<Gauss> {
     LEVELS.iter().map(|&n| Gauss::new(n)).collect()
 }
@@ -76,7 +74,7 @@ pub(crate) fn rules() -> Vec<Gauss> {
 /// The albedos at the first order that is accurate enough, or else at the last.
 ///
 /// The estimate of their error is `factor` times the largest difference between the last two
-/// orders, plus what the cut leaves out, which no order sees.
+/// orders, plus what the cut leaves out, which no order includes.
 pub(crate) fn converge<const N: usize>(
     rules: &[Gauss],
     tolerance: f64,

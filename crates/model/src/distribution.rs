@@ -1,4 +1,4 @@
-//! What every distribution of microfacet normals can be asked.
+//! The trait of distributions of microfacet normals.
 
 use glam::DVec3;
 use microfacet_core::Masking;
@@ -34,9 +34,9 @@ pub trait MicrofacetDistribution {
         if v.z > 0.0 { masking.g2_over_g1(self.g1(v), self.g1(l)) } else { 0.0 }
     }
 
-    /// The normal visible from `v` at u ∈ [0, 1]²: in the plane of incidence, rising from away from
-    /// the viewer to towards it with `u[0]`, and across it, rising with `u[1]`, both by inverting
-    /// the CDF. Views below the horizon are taken at it.
+    /// The normal visible from `v` at u ∈ [0, 1]². `u[0]` inverts the CDF of the slope in the plane
+    /// of incidence, which rises towards the viewer, and `u[1]` that of the slope across. A view
+    /// below the horizon is moved to the horizon.
     fn sample_visible_normal(&self, v: DVec3, u: [f64; 2]) -> DVec3;
 
     /// Density of visible normals, G1(v) (v·m)⁺ D(m)/(v·n) (Heitz & d'Eon 2014, eq. 2,

@@ -1,4 +1,4 @@
-//! The Ellipsoid distribution of normals of any shape γ: a Student-t lobe seen through a 3×3
+//! The Ellipsoid distribution of normals of any shape γ: a Student-t lobe transformed by a 3×3
 //! matrix.
 
 use core::f64::consts::PI;
@@ -52,7 +52,7 @@ pub struct Ellipsoid {
     shape: Shape,
 }
 
-/// A direction in unit space, turned so that it lies over the first axis.
+/// A direction in unit space, turned to azimuth 0.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
     /// Horizontal length and height; not normalised, the height may be negative.
@@ -62,14 +62,13 @@ pub(crate) struct View {
     pub(crate) sin_phi: f64,
 }
 
-/// The distribution of in-plane slopes that a view sees.
 enum InPlane<'a> {
     Above(VisibleSlope<'a>),
     Below(SlopeBelowHorizon<'a>),
 }
 
 impl Ellipsoid {
-    /// A lobe of shape γ seen through a matrix.
+    /// A lobe of shape γ transformed by a matrix.
     ///
     /// # Errors
     /// [`EllipsoidError::Parameter`] unless γ > 3/2.
@@ -179,8 +178,7 @@ impl Ellipsoid {
 }
 
 /// G1(v) = min(1, (v·n)/projected area), and Λ and G2 accordingly, as in Walter et al. 2015, eq. 6:
-/// without the clamp a lobe that leans away from v would show less area than the surface it stands
-/// on.
+/// a lobe that leans away from v may show less area than the macrosurface.
 impl MicrofacetDistribution for Ellipsoid {
     /// D(m), 0 at and below the horizon; at γ = 2 it is 1/(π |A| ‖An‖ ‖A⁻ᵀm‖⁴) (Walter et al. 2015,
     /// eq. 1).
@@ -232,7 +230,6 @@ impl MicrofacetDistribution for Ellipsoid {
     }
 }
 
-/// Turns by the azimuth given as (cos, sin).
 pub(crate) fn turn(m: DVec3, cos: f64, sin: f64) -> DVec3 {
     DVec3::new(m.x * cos - m.y * sin, m.x * sin + m.y * cos, m.z)
 }

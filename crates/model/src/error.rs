@@ -1,4 +1,4 @@
-//! What a constructor refuses, with the value, the allowed range and the remedy.
+//! Parameters that constructors refuse; each message states the value, the range and the remedy.
 
 /// A parameter outside the domain of a distribution.
 #[derive(Clone, Copy, PartialEq, thiserror::Error)]
@@ -48,7 +48,6 @@ pub enum ParameterError {
 
 microfacet_core::debug_in_words!(ParameterError);
 
-/// Checks the cosine of a view above the surface.
 pub(crate) fn check_cosine(cos: f64) -> Result<(), ParameterError> {
     if (0.0..=1.0).contains(&cos) { Ok(()) } else { Err(ParameterError::CosTheta(cos)) }
 }

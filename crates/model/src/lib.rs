@@ -1,5 +1,5 @@
-//! The Student-t microfacet model in double precision: the truth that tables are baked from and
-//! judged by.
+//! The Student-t microfacet model in double precision: the reference that tables are baked from and
+//! measured against.
 //!
 //! [`StudentT`] is the distribution of normals with roughness σx, σy and shape γ (Ribardière,
 //! Bringier, Meneveaux, Simonot 2017, *STD: Student's t-Distribution of Slopes for Microfacet Based
@@ -16,7 +16,7 @@
 //! | scatter more than once | [`StudentT::walk`] |
 //! | reflect at conductors and dielectrics | [`fresnel`] |
 //! | use GTR, Gauss, Schlick, Sawicki or a measured D | [`classic`] |
-//! | look into one shape: marginals, CDFs, quantiles | [`Shape`], [`VisibleSlope`] |
+//! | get the marginals, CDFs and quantiles of one shape | [`Shape`], [`VisibleSlope`] |
 //! | test a sampler of your own | `statistics` |
 //!
 //! # D, masking, visible normals
@@ -78,7 +78,7 @@ mod transmission;
 mod visible;
 mod walk;
 
-// What every caller needs in the version that this crate is built with.
+// Callers need glam in the version that this crate is built with.
 pub use glam;
 
 pub use albedo::AlbedoIntegrator;
@@ -92,7 +92,8 @@ pub use shape::{AsinhSlope, Shape};
 pub use student_t::StudentT;
 pub use visible::{SignedSlope, UnitView, VisibleSlope, across_cdf, across_quantile};
 
-/// The formulas as the paper prints them, for comparison only; see each for where it fails.
+/// The formulas as the paper prints them, for comparison only; the documentation of each says where
+/// it fails.
 pub mod printed {
     pub use crate::paper::*;
 }

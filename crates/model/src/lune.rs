@@ -2,8 +2,9 @@
 //! references and for comparison.
 //!
 //! At γ = 2 the lobe in unit space is a hemisphere of equal weight everywhere. The visible normals
-//! are the points of it that a view sees, uniform when projected onto the plane across the view.
-//! The silhouette in that plane is half a disc and half an ellipse with half-axes 1 and |cos θ|.
+//! are the points of it that a view sees, uniform when projected onto the plane perpendicular to
+//! the view. The silhouette in that plane is half a disc and half an ellipse with half-axes 1 and
+//! |cos θ|.
 
 use core::f64::consts::PI;
 
@@ -51,8 +52,8 @@ impl Lune<'_> {
     pub fn sample_silhouette(&self, v: DVec3, uniform: &mut impl FnMut() -> f64) -> DVec3 {
         let (view, frame) = Frame::of(self.ellipsoid, v);
         loop {
-            // Down to the ellipse's lower rim; for a view from below, a crescent remains whose
-            // horns lie at 0.
+            // Down to the ellipse's lower rim; for a view from below, a crescent remains whose tips
+            // lie at 0.
             let up = 1.0 - uniform() * (1.0 + frame.cos.max(0.0));
             let side = 2.0 * uniform() - 1.0;
             let reach = (1.0 - side * side).max(0.0).sqrt();
@@ -94,7 +95,7 @@ impl Lune<'_> {
     }
 }
 
-/// The plane across the view in unit space, the view over the x axis.
+/// The plane perpendicular to the view in unit space, in a frame where the view has azimuth 0.
 struct Frame {
     sin: f64,
     cos: f64,
@@ -107,7 +108,7 @@ impl Frame {
         (view, Self { sin: view.across / length, cos: view.up / length })
     }
 
-    /// The point of the sphere that projects to (up, side), up being n's own projection.
+    /// The point of the sphere that projects to (up, side); up is along the projection of n.
     fn point(&self, up: f64, side: f64) -> DVec3 {
         let towards = (1.0 - up * up - side * side).max(0.0).sqrt();
         DVec3::new(towards * self.sin - up * self.cos, side, towards * self.cos + up * self.sin)

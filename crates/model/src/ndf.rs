@@ -1,5 +1,4 @@
-//! Sampling the distribution of normals in closed form (Ribardière et al. 2017,
-//! <https://doi.org/10.1111/cgf.13137>, eq. 16–17 and 19–20).
+//! Sampling the normal distribution function in closed form.
 
 use core::f64::consts::PI;
 

@@ -12,7 +12,7 @@ const MOST: usize = 16;
 pub(crate) struct Gauss {
     /// (node, weight), ascending; the weights sum to 1.
     points: Vec<(f64, f64)>,
-    /// The same for k = 1, 2, … panels that shrink towards 0: the rule on each panel of
+    /// (node, weight) on k = 1, 2, … panels that shrink towards 0: the rule on each panel of
     /// τ ∈ [0, 2k], with nodes at sinh τ/sinh 2k.
     graded: Vec<Vec<(f64, f64)>>,
 }
@@ -34,17 +34,15 @@ impl Gauss {
     }
 }
 
-/// An end of an interval of integration, and the distance from it within which the integrand varies
-/// quickly.
+/// An end of an interval of integration.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct End {
     pub(crate) at: f64,
-    /// That distance; ∞ where nothing varies quickly.
+    /// Distance from the end within which the integrand varies quickly; ∞ if it does not.
     pub(crate) scale: f64,
 }
 
 impl End {
-    /// An end about which nothing varies quickly.
     pub(crate) const fn plain(at: f64) -> Self {
         Self { at, scale: f64::INFINITY }
     }
@@ -53,8 +51,8 @@ impl End {
 impl Gauss {
     /// Calls `add(node, weight)` over [low.at, high.at] with panels no wider than `width`. Panels
     /// shrink geometrically towards an end whose scale is less than `width`: there the variable is
-    /// end ± scale·sinh τ, in which the integrand is regular, with a scale no larger than asked for
-    /// at which τ ends with a panel.
+    /// end ± scale·sinh τ, in which the integrand is regular. The scale is reduced to one at which
+    /// the range of τ is a whole number of panels.
     #[inline]
     pub(crate) fn graded(&self, low: End, high: End, width: f64, mut add: impl FnMut(f64, f64)) {
         let length = high.at - low.at;
@@ -82,7 +80,7 @@ impl Gauss {
         }
     }
 
-    /// The same over the intervals between ascending stops.
+    /// [`graded`](Self::graded) over the intervals between ascending stops.
     #[inline]
     pub(crate) fn between(&self, stops: &[End], width: f64, mut add: impl FnMut(f64, f64)) {
         for pair in stops.windows(2) {
@@ -90,7 +88,8 @@ impl Gauss {
         }
     }
 
-    /// The rule on panels that shrink towards an end at which the scale is a `ratio`th of them all.
+    /// The rule on panels that shrink towards an end whose scale is 1/`ratio` of their total
+    /// length.
     fn towards(&self, ratio: f64) -> &Vec<(f64, f64)> {
         let panels = libm::asinh(ratio) / STEP;
         &self.graded[(panels as usize).min(MOST - 1)]

@@ -1,24 +1,24 @@
 //! Λ as Ribardière et al. 2017 (<https://doi.org/10.1111/cgf.13137>) print it, in the arrangement
 //! of their equations.
 //!
-//! Kept to show where each form loses digits or overflows; use
-//! [`Shape::lambda`](crate::Shape::lambda) instead. Arguments: γ and the unit cotangent
-//! z = cot θ/σ > 0. The study `printed_formulas` compares each with the well-conditioned form.
+//! Kept to show where each formula loses digits or overflows; use
+//! [`Shape::lambda`](crate::Shape::lambda) instead. Arguments: γ and the unit cotangent z = cot
+//! θ/σ > 0. The study `printed_formulas` compares each with the well-conditioned form.
 
 use core::f64::consts::PI;
 
-/// A printed form of Λ.
+/// A printed formula of Λ.
 #[derive(Clone, Copy, Debug)]
 pub struct Form {
     /// The numbers of its equations.
     pub equation: &'static str,
-    /// What it is called here.
+    /// A short name.
     pub name: &'static str,
-    /// Λ of γ and z; `None` where the form is not defined at γ.
+    /// Λ of γ and z; `None` where the formula is not defined at γ.
     pub lambda: fn(f64, f64) -> Option<f64>,
 }
 
-/// All of them, in the order in which they are explained here.
+/// All printed formulas, by the number of their equation.
 pub const FORMS: [Form; 4] = [
     form("13-15", "hypergeometric", |gamma, z| Some(lambda_hypergeometric(gamma, z))),
     form("21", "integer", lambda_integer),
@@ -129,13 +129,13 @@ fn polynomial(x: f64, c: [f64; 4]) -> f64 {
     c[0] + x * (c[1] + x * (c[2] + x * c[3]))
 }
 
-/// Γ(γ−½)/(√π Γ(γ)) by the paper's Γ; Γ(γ) overflows from γ = 171.7.
+/// Γ(γ−½)/(√π Γ(γ)).
 fn prefactor(gamma: f64) -> f64 {
     libm::tgamma(gamma - 0.5) / (PI.sqrt() * libm::tgamma(gamma))
 }
 
-/// ₂F₁(½, γ−½; 3/2; −x), x ≥ 0, by the power series that converges. All but the first have positive
-/// terms alone, and lose no digit; the test below has what is left of Λ.
+/// ₂F₁(½, γ−½; 3/2; −x), x ≥ 0, by the power series that converges. All but Pfaff's have positive
+/// terms only, and lose no digit.
 fn hypergeometric(gamma: f64, x: f64) -> f64 {
     let (y, w) = (x / (1.0 + x), 1.0 / (1.0 + x));
     if gamma.fract() == 0.0 && gamma <= 12.0 {
@@ -144,10 +144,10 @@ fn hypergeometric(gamma: f64, x: f64) -> f64 {
         return w.sqrt() * series(|n| (0.5 + n) * (2.0 - gamma + n) / ((1.5 + n) * (n + 1.0)) * y);
     }
     if y <= 0.5 {
-        // Euler's of that, (1+x)^(½−γ) ₂F₁(1, γ−½; 3/2; y).
+        // Euler's transformation, (1+x)^(½−γ) ₂F₁(1, γ−½; 3/2; y).
         return libm::pow(w, gamma - 0.5) * series(|n| (gamma - 0.5 + n) / (1.5 + n) * y);
     }
-    // Near the branch point, by 1 − y = w (DLMF 15.8.4), what is missing to the value at x = ∞.
+    // Near the branch point, by 1 − y = w (DLMF 15.8.4), the difference to the value at x = ∞.
     let whole = 0.5 * PI.sqrt() * libm::tgamma(gamma - 1.0) / libm::tgamma(gamma - 0.5);
     let missing = series(|n| (gamma - 0.5 + n) / (gamma + n) * w) / (2.0 * (gamma - 1.0));
     whole / x.sqrt() - libm::pow(w, gamma - 0.5) * missing
@@ -209,7 +209,7 @@ mod tests {
                 let [found, truth] =
                     [lambda(gamma, 1.0)?, exact(gamma, 1.0)].map(|x| 1.0 / (1.0 + x));
                 let error = (found - truth).abs();
-                // That of the approximation is at most 6.9e-3: `docs/formulas.md`.
+                // The error of eq. 22–23 is at most 6.9e-3 (`docs/formulas.md`).
                 let tolerance = if name == "rational" { 7e-3 } else { 1e-14 };
                 assert!(error < tolerance, "{name} at gamma {gamma}: {error}");
                 Some(name)

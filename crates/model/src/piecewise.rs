@@ -38,8 +38,8 @@ impl<const N: usize> Chebyshev<N> {
     }
 }
 
-/// The polynomial with these power coefficients at t: even and odd powers apart, which is faster
-/// than one chain.
+/// The polynomial with these power coefficients at t: even and odd powers are summed separately,
+/// which is faster than one chain.
 #[inline(always)]
 pub(crate) fn polynomial<const N: usize>(coefficients: &[f64; N], t: f64) -> f64 {
     let square = t * t;

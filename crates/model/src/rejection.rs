@@ -3,8 +3,8 @@
 //! For centrally symmetric slopes, visible normals = G1 · (flipped NDF) + (1 − G1) · (excess). The
 //! flipped NDF is a slope of the NDF, turned towards the viewer as often as visibility requires.
 //! The excess beyond the silhouette has a density ∝ (x − z) p(x), drawn by rejection from ∝ x p(x),
-//! whose CDF inverts in closed form. Tables are tested against this sampler; its price is a
-//! variable number of random numbers.
+//! whose CDF inverts in closed form. Tables are tested against this sampler; it takes a variable
+//! number of random numbers.
 
 use core::f64::consts::PI;
 
@@ -20,7 +20,7 @@ impl StudentT {
     ///
     /// A draw takes 1 + (3 or more) numbers; the rejection accepts 1 in 1.1–2.8. Every draw is an
     /// excess draw at grazing and for views below the horizon, which see the microsurface from
-    /// within; for those the rejection accepts the less, the steeper the view.
+    /// within; for those the acceptance falls as the view gets steeper.
     pub fn sample_visible_by_rejection(
         &self,
         v: DVec3,

@@ -34,13 +34,13 @@ pub struct Shape {
     k: f64,
     /// Normalisation of the in-plane slope's marginal in canonical space (exponent −k−1).
     c: f64,
-    /// The same for the slope across, given the in-plane slope (exponent −k−3/2).
+    /// Normalisation of the slope across, given the in-plane slope (exponent −k−3/2).
     c_across: f64,
 }
 
 /// A unit slope x ≥ 0 written as w with x = sinh(√s w)/√s (x = w for Beckmann).
 ///
-/// w is finite wherever there is probability: near γ = 3/2 slopes of 10³⁰⁰ are not rare.
+/// w is finite wherever there is probability; near γ = 3/2 a slope x of 10³⁰⁰ is not rare.
 pub type AsinhSlope = f64;
 
 impl Shape {
@@ -103,7 +103,7 @@ impl Shape {
         if self.is_beckmann() { w } else { libm::sinh(self.sqrt_s * w) / self.sqrt_s }
     }
 
-    /// Sine and cosine of the angle whose tangent is the unit slope of w; accurate where that
+    /// Sine and cosine of the angle whose tangent is the unit slope of w; accurate where the slope
     /// overflows.
     pub fn unit_sin_cos(&self, w: AsinhSlope) -> (f64, f64) {
         if self.is_beckmann() {
@@ -187,7 +187,7 @@ impl Shape {
     /// `w` is [`asinh_slope(z)`](Self::asinh_slope). Λ = E[(X − z)⁺]/z; ∞ at z = 0 and 0 at z = ∞.
     /// Relative accuracy 1e-12 wherever Λ is a normal double (measured 8e-16 against 200-digit
     /// values where no power is large); of Beckmann 5e-13 up to z = 8, where Λ is 4e-32, and 8e-11
-    /// where it ends, at z = 26.
+    /// at z = 26, the end of the normal doubles.
     pub fn lambda(&self, w: AsinhSlope) -> f64 {
         if w == 0.0 {
             return f64::INFINITY;
@@ -216,7 +216,8 @@ impl Shape {
         if z.is_infinite() { 0.0 } else { z * self.lambda(w) }
     }
 
-    /// The same at the unit slope z itself, whose square must not overflow: faster.
+    /// [`excess`](Self::excess) at the unit slope z, whose square must not overflow: faster than
+    /// from w.
     pub(crate) fn excess_at(&self, z: f64) -> f64 {
         if self.is_beckmann() || z == 0.0 {
             return self.excess(z);
@@ -228,7 +229,7 @@ impl Shape {
     /// which share most of their work.
     pub(crate) fn tail_excess_density(&self, w: AsinhSlope) -> [f64; 3] {
         let v = self.sqrt_s * w;
-        // Where the slope overflows or vanishes the excess has forms of its own.
+        // Where the slope overflows or vanishes the excess has formulas of its own.
         if self.is_beckmann() || w == 0.0 || v > 700.0 {
             return [self.tail(w), self.excess(w), self.density(w)];
         }

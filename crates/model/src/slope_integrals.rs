@@ -69,8 +69,7 @@ pub(crate) fn inverse_ln_cosh(x: f64) -> f64 {
     x + libm::log1p((-libm::expm1(-2.0 * x)).sqrt())
 }
 
-/// 2F1(1, b; c; −w) for w ≥ 0 and 0 < b ≤ c by Gauss's continued fraction (DLMF 15.7.5 with a = 1),
-/// all of whose terms are positive.
+/// 2F1(1, b; c; −w) for w ≥ 0 and 0 < b ≤ c by Gauss's continued fraction (DLMF 15.7.5 with a = 1).
 fn gauss_fraction(b: f64, c: f64, w: f64) -> f64 {
     // 1/(1 + d₁w/(1 + d₂w/(1 + …))) by the modified Lentz recurrence; no denominator vanishes
     // because all terms are positive.
@@ -110,7 +109,7 @@ fn central(k: f64, c: f64, tanh: f64, power: f64) -> f64 {
     c * tanh * power * sum
 }
 
-/// A rapidity v ≥ 0 with what all integrals there share.
+/// A rapidity v ≥ 0 with the functions of it that all integrals use.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
     k: f64,
@@ -146,8 +145,8 @@ impl Place {
 
     /// The upper tail Q(v) = ∫_{sinh v}^∞ p(a) da.
     ///
-    /// Relative accuracy about 1e-15 · (1 + (2k+1) ln cosh v), whose second part is the
-    /// conditioning of the power itself.
+    /// Relative accuracy about 1e-15 · (1 + (2k+1) ln cosh v), whose second term is the
+    /// conditioning of the power.
     pub(crate) fn tail(&self) -> f64 {
         let Self { k, c, tanh, power, .. } = *self;
         if self.is_central() {
@@ -174,17 +173,15 @@ impl Place {
     }
 }
 
-/// [`Place::tail`] at a rapidity.
 pub(crate) fn tail(k: f64, c: f64, v: f64) -> f64 {
     Place::new(k, c, v).tail()
 }
 
-/// [`Place::lambda`] at a rapidity.
 pub(crate) fn lambda(k: f64, c: f64, v: f64) -> f64 {
     Place::new(k, c, v).lambda()
 }
 
-/// Λ at the cotangent a itself, whose square must not overflow: four times as fast.
+/// [`lambda`] from the cotangent a = sinh v, whose square must not overflow: four times as fast.
 pub(crate) fn lambda_at(k: f64, c: f64, a: f64) -> f64 {
     let square = a * a;
     let ln_cosh = 0.5 * libm::log1p(square);
@@ -227,7 +224,7 @@ mod tests {
         for k in [1e-3, 0.01, 0.3, 0.5, 1.0, 3.7, 100.0, 1e4] {
             for a in [1e-12, 1e-3, 0.05, 0.3, 1.0, 4.0, 50.0, 1e6] {
                 let [got, want] = [lambda_at(k, norm(k), a), lambda(k, norm(k), libm::asinh(a))];
-                // The power's own conditioning.
+                // The conditioning of the power.
                 let bound = 1e-14 * (1.0 + k * libm::log1p(a * a));
                 assert!((got - want).abs() <= bound * want, "k {k}, a {a}: {got} for {want}");
             }

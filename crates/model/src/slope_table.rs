@@ -10,15 +10,15 @@ const PIECES: f64 = 8.0;
 /// Coefficients of a piece's polynomials.
 const N: usize = 9;
 
-/// Rapidity √s w from which cosh and sinh are half an exponential, and so is the density's power:
-/// e⁻⁴⁰ is less than a rounding error, also of the power.
+/// Rapidity √s w from which cosh and sinh, also in the density's power, are taken as half an
+/// exponential: the relative difference, e⁻⁴⁰, is less than rounding.
 const FAR: f64 = 20.0;
 
 /// The unit slope r of an asinh slope w, and π P22(r) r dr/dw.
 #[derive(Clone, Debug)]
 pub(crate) struct SlopeTable {
     pieces: Vec<[[f64; N]; 2]>,
-    /// Beyond the pieces: rate and logarithm of the factor of both exponentials.
+    /// Rate, and logarithm of the factor, of both exponentials beyond the pieces.
     far: [[f64; 2]; 2],
 }
 
@@ -58,7 +58,7 @@ impl SlopeTable {
     }
 }
 
-/// The same without the table.
+/// [`SlopeTable::at`] by the formulas.
 fn exact(shape: &Shape, w: f64) -> (f64, f64) {
     let r = shape.slope(w);
     let power = if shape.is_beckmann() {

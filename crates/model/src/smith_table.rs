@@ -30,7 +30,7 @@ impl SmithTable {
         Self::from_excess(|z| shape.excess_at(z), unmasked)
     }
 
-    /// The same for any symmetric distribution of unit slopes, from its E[(X − z)⁺] = z Λ(z).
+    /// G1 of any symmetric distribution of unit slopes, from its E[(X − z)⁺] = z Λ(z).
     pub(crate) fn from_excess(excess: impl Fn(f64) -> f64, unmasked: f64) -> Self {
         let chebyshev = Chebyshev::new();
         let mut pieces = Vec::new();

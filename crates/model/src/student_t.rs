@@ -143,7 +143,8 @@ impl StudentT {
         (view, [cos_phi, sin_phi])
     }
 
-    /// Builds the world normal from the unit slopes x (towards the viewer) and t = y/√(1 + s x²).
+    /// The normal in the tangent frame with the unit slopes x (towards the viewer) and
+    /// t = y/√(1 + s x²).
     pub(crate) fn assemble(&self, at: &Stretched, x: SignedSlope, t: SignedSlope) -> DVec3 {
         let DVec3 { x, y, z } = visible::unit_normal(&self.shape, x, t);
         above_horizon(DVec3::new(
@@ -155,8 +156,8 @@ impl StudentT {
 }
 
 impl MicrofacetDistribution for StudentT {
-    /// D(m) by eq. 18 with 11. For γ < 2 it grows towards the horizon without bound, as cos^(2γ−4)
-    /// θ, and ends at `f64::MAX`.
+    /// D(m) by eq. 18 with 11. For γ < 2, D grows towards the horizon without bound, as cos^(2γ−4)
+    /// θ, and is clamped to `f64::MAX`.
     fn d(&self, m: DVec3) -> f64 {
         if !(m.z > 0.0) {
             return 0.0;

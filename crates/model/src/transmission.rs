@@ -22,18 +22,17 @@ use crate::error::{ParameterError, check_cosine};
 use crate::fresnel::Dielectric;
 use crate::panels::{End, Gauss};
 
-/// One view of one interface.
 struct Pane<'a> {
     model: &'a AlbedoIntegrator,
     dielectric: Dielectric,
     sigma: f64,
-    /// Its kink is v·m at which total reflection sets in; 0 if it does not.
+    /// `kink` is the v·m at which total reflection sets in; 0 if it does not.
     view: View,
 }
 
 impl AlbedoIntegrator {
     /// Albedo of transmission: the share of the light from a direction at cos θ ∈ [0, 1] that one
-    /// refraction at the rough interface sends on below it, for roughness σ ≥ 0 along both axes.
+    /// refraction transmits through the rough interface, for roughness σ ≥ 0 along both axes.
     ///
     /// The density of l is that of Walter et al. 2007
     /// (<https://doi.org/10.2312/EGWR/EGSR07/195-206>), eq. 21, with radiance scaled to energy.
@@ -61,7 +60,7 @@ impl AlbedoIntegrator {
         view.kink = kink;
         let pane = Pane { model: self, dielectric, sigma, view };
         Ok(self.refined(self.tolerance, kink > 0.0, |rule| {
-            // The other half of the turn is the same.
+            // The integrand is even in φ: half a turn counts twice.
             view.over_sectors(rule, pane.sectors(), 2.0, |phi| pane.ray(rule, phi).map(|x| [x]))
         }))
     }
@@ -101,7 +100,6 @@ impl Pane<'_> {
         (strong && there && eta != 1.0).then(|| sin / ((eta - cos) * self.sigma))
     }
 
-    /// The integral along one ray of slopes from m = n.
     fn ray(&self, rule: &Gauss, phi: f64) -> [f64; 2] {
         let (View { cos, sin, .. }, eta) = (self.view, self.dielectric.eta());
         let a = self.sigma * self.sigma;
@@ -110,7 +108,7 @@ impl Pane<'_> {
         // The slope from which on m faces away from the view; ∞ if there is none.
         let rim = if b > 0.0 { self.model.shape().asinh_slope(cos / b) } else { f64::INFINITY };
         let scale = if rim < self.model.cut && eta > 1.0 {
-            // cos θ_t turns within v·m of √(η²−1).
+            // cos θ_t bends where v·m is of the order of √(η²−1).
             let across = ((eta - 1.0) * (eta + 1.0)).sqrt();
             let r = cos / b;
             0.5 * across * (1.0 + a * r * r).sqrt() / (b * (1.0 + s * r * r).sqrt())
@@ -133,8 +131,7 @@ impl Pane<'_> {
         }
         let mut sum = [0.0; 2];
         for stop in stops.into_iter().chain([end]) {
-            // One point tells whether light passes in the whole interval: this changes only at the
-            // stops.
+            // Whether light passes changes only at the stops: one point decides for the interval.
             let middle = self.model.slopes.at(0.5 * (from.at + stop.at)).0;
             if self.refracted(a, b, middle).is_some() {
                 rule.graded(from, stop, PANEL, |w, jacobian| {
@@ -177,7 +174,7 @@ impl Pane<'_> {
         if depth <= 0.0 {
             return None;
         }
-        // |l_xy|² from the sides of the triangle; cos φ = b/(σ sin θ).
+        // |l_xy|² by the law of cosines; cos φ = b/(σ sin θ).
         let (reach, ahead) = (k * self.sigma * r / length, sin / eta);
         let along = if sin > 0.0 { b / (self.sigma * sin) } else { 0.0 };
         let across2 = reach * reach + ahead * ahead - 2.0 * reach * ahead * along;

@@ -3,8 +3,8 @@
 //!
 //! In unit space a view at polar angle θ sees the in-plane slope x (positive towards the viewer)
 //! with density ∝ (cos θ + x sin θ) p(x) on x > −cot θ, and the slope across y = √(1 + s x²)·t with
-//! t of density ∝ (1 + s t²)^(−γ), independent of the view and of x. These are the angles α and β
-//! of the canonical lobe, tan α = √s x and tan β = √s t, in a form that has the limit s → 0.
+//! t of density ∝ (1 + s t²)^(−γ), independent of the view and of x. The angles α and β of the
+//! canonical lobe are tan α = √s x and tan β = √s t; x and t have a limit for s → 0.
 
 use glam::DVec3;
 
@@ -91,8 +91,8 @@ impl<'a> VisibleSlope<'a> {
         rest
     }
 
-    /// Projected area of the microsurface in unit space, cos θ (1 + Λ); if peeled, that of the part
-    /// that is left, ½ at grazing.
+    /// Projected area of the microsurface in unit space, cos θ (1 + Λ); if peeled, without the
+    /// heavy part, and ½ at grazing.
     pub fn area(&self) -> f64 {
         self.area
     }
@@ -226,7 +226,7 @@ pub(crate) fn unit_normal(shape: &Shape, x: SignedSlope, t: SignedSlope) -> DVec
 /// every fourth slope overflows.
 pub(crate) const HORIZON: f64 = 1e-300;
 
-/// Normalises a normal and raises it to the smallest cosine where it is lower.
+/// Normalises a normal and raises its cosine to [`HORIZON`] where it is lower.
 pub(crate) fn above_horizon(m: DVec3) -> DVec3 {
     let largest = m.abs().max_element();
     // Squares of smaller components would underflow, and with them the length.

@@ -164,7 +164,7 @@ fn d_follows_its_power_law_down_to_the_smallest_cosines() {
                 assert!(((at / from).ln() - power).abs() < 1e-11, "{gamma} {z}: {at} from {from}");
             }
         }
-        // The smallest number is beyond what a double holds of D, for γ near 3/2.
+        // At the smallest cosine D overflows for γ near 3/2.
         assert!(lobe.d(low(5e-324)) <= f64::MAX && tilted.d(low(5e-324)) <= f64::MAX);
     }
     assert_eq!(StudentT::beckmann(0.5).unwrap().d(low(1e-200)), 0.0);

@@ -1,4 +1,4 @@
-//! What bounding visible normals gains an estimator of reflection:
+//! The gain of bounded visible normals for an estimator of reflection:
 //! `cargo run --release -p microfacet-sampler --example bounded`.
 //!
 //! Prints the variance of a white furnace's weight for bounded normals over that for all visible

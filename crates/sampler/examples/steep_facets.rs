@@ -1,6 +1,6 @@
-//! How much of what rough glass of γ < 2 transmits goes through facets so steep that it is only
-//! sampled, and how well the densities of all other samples are found again from their directions:
-//! `cargo run --release -p microfacet-sampler --example steep_facets`.
+//! The share of the light transmitted by rough glass of γ < 2 that goes through facets so steep
+//! that it is only sampled, and how often the density of another sample, computed from its
+//! directions, is off: `cargo run --release -p microfacet-sampler --example steep_facets`.
 
 use glam::Vec3;
 use rand::rngs::StdRng;
@@ -36,7 +36,7 @@ fn main() {
 }
 
 /// The share of the transmitted light that is only sampled, and the shares of other transmitted
-/// samples whose density is found again off by more than one and ten per cent.
+/// samples whose density, computed from the directions, is off by more than one and ten per cent.
 fn row<B: Bsdf<1>>(glass: &B, theta: f32) -> [f64; 3] {
     let v = Vec3::new(theta.sin(), 0.0, theta.cos());
     let mut random = StdRng::seed_from_u64(1);

@@ -1,8 +1,8 @@
 //! Elementary functions over the ranges that samplers need, in a few multiplications.
 //!
 //! They consist of operations that every system rounds alike, so a sampled normal has the same bits
-//! everywhere, and they take a fraction of a library's time, whose functions serve every argument.
-//! The polynomials are interpolations at Chebyshev's points.
+//! everywhere. They take a fraction of the time of library functions, which serve every argument.
+//! The polynomials interpolate at Chebyshev points.
 
 use core::f32::consts::{LN_2, TAU};
 use core::ops::{Add, Mul, Sub};
@@ -37,26 +37,26 @@ pub(crate) fn log2(x: f32x4) -> f32x4 {
 }
 
 /// log₂(1 + part/whole) of part ≥ 0 and whole > 0, to 3e-7 of the logarithm: it keeps the digits of
-/// a part that is small beside the whole.
+/// a `part` that is small compared with `whole`.
 ///
-/// The quotient itself is not formed, and may be out of range. A whole below the least normal
-/// number counts as about that.
+/// The quotient itself is not formed, and may be out of range. A `whole` below the least normal
+/// number counts as about that number.
 #[inline(always)]
 pub(crate) fn log2_growth(whole: f32, part: f32) -> f32 {
     let [exponent, t] = growth(whole, part);
     exponent + log2_of_half_tangent(t)
 }
 
-/// scale·(1 + part/whole)ᵖ of a power p, to 4e-7 of it and of its logarithm, arguments as for
-/// [`log2_growth`]; 0 where the power is below 2⁻¹²⁶ or NaN. It must not exceed 2¹²⁶.
+/// scale·(1 + part/whole)ᵖ, to a relative error of 4e-7 times one plus its logarithm, arguments as
+/// for [`log2_growth`]; 0 where the power is below 2⁻¹²⁶ or NaN. The power must not exceed 2¹²⁶.
 ///
-/// The steps are in the order in which the least of them wait for each other. It is a part of D,
-/// which whatever a BSDF returns waits for.
+/// The steps are ordered so that the fewest wait for each other: D is on the critical path of a
+/// BSDF.
 #[inline(always)]
 pub(crate) fn scaled_power_of_growth(whole: f32, part: f32, power: f32, scale: f32) -> f32 {
     let [exponent, t] = growth(whole, part);
     let y = t * t;
-    // Its square would else be subnormal, and slow; the terms of it vanish beside the first.
+    // A smaller square would be subnormal, and slow; its terms vanish next to the first.
     let high = y.max(1e-16);
     let [a, b, c, d] = HALF_TANGENT;
     let series = (a + y * b) + (high * high) * (c + y * d);
@@ -69,18 +69,17 @@ pub(crate) fn scaled_power_of_growth(whole: f32, part: f32, power: f32, scale: f
 
 /// The whole number e and the half tangent t, |t| ≤ 0.2, of 1 + part/whole = 2ᵉ (1+t)/(1−t).
 ///
-/// Of one number, not of lanes: where the other lanes are not read, compilers leave anything there,
-/// and where that is subnormal it takes as long as five calls.
+/// Of one number, not of lanes: compilers leave arbitrary numbers in lanes that are not read, and a
+/// subnormal one takes as long as five calls.
 #[inline(always)]
 fn growth(whole: f32, part: f32) -> [f32; 2] {
     const HALF: i32 = 1 << 22;
     let sum = whole + part;
     let [low, high] = [whole, sum].map(|x| x.to_bits() as i32);
-    // The sum over the whole is 2ᵉ m with |log₂ m| ≤ 0.59, since bits are linear between powers of
-    // 2.
+    // sum/whole is 2ᵉ m with |log₂ m| ≤ 0.59, since bits are linear between powers of 2.
     let exponent = high.wrapping_sub(low).wrapping_add(HALF) >> 23;
     let scaled = f32::from_bits(low.wrapping_add(exponent << 23) as u32);
-    // The first difference is exact, and the second what rounding took from the sum.
+    // The first difference is exact; the second is the rounding error of the sum.
     let excess = (sum - scaled) + (part - (sum - whole));
     [exponent as f32, excess / (sum + scaled)]
 }
@@ -94,10 +93,9 @@ pub(crate) fn exp2(x: f32x4) -> f32x4 {
     power * scale
 }
 
-/// The exponent of the least normal number.
 const LEAST_EXPONENT: f32 = -126.0;
 
-/// A number, or lanes of them, in which the formulas above are written once.
+/// A number, or lanes of them: the formulas are written once for both.
 trait Number: Copy + From<f32> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
 impl Number for f32 {}
 impl Number for f32x4 {}
@@ -105,12 +103,11 @@ impl Number for f32x4 {}
 /// log₂ of (1+t)/(1−t), 2 artanh(t)/ln 2, over t, by powers of t²: for |t| ≤ 0.2, to 3e-9.
 const HALF_TANGENT: [f32; 4] = [2.885_390_07, 0.961_802_25, 0.576_390_26, 0.439_189_35];
 
-/// log₂ of (1+t)/(1−t).
 #[inline(always)]
 fn log2_of_half_tangent<T: Number>(t: T) -> T {
     let y = t * t;
     let [a, b, c, d] = HALF_TANGENT.map(T::from);
-    // Not in two halves, which are faster: y² may be subnormal, and slow.
+    // Horner's scheme: in the faster split into halves y² may be subnormal, and slow.
     t * (a + y * (b + y * (c + y * d)))
 }
 
@@ -118,7 +115,7 @@ fn log2_of_half_tangent<T: Number>(t: T) -> T {
 #[inline(always)]
 fn whole_and_fraction<T: Number>(x: T) -> [T; 2] {
     let c = T::from;
-    // A sum with it is rounded to a whole number.
+    // A sum with `shift` is rounded to a whole number.
     let shift = c(12_582_912.0);
     let shifted = x + shift;
     let w = x - (shifted - shift);
@@ -186,7 +183,7 @@ mod tests {
             }
         }
         assert_eq!(log2_growth(0.3, 0.0), 0.0);
-        // A whole that has left the range is that of its end.
+        // A `whole` of 0 counts as the least normal number.
         let all = log2_growth(0.0, 1.0);
         assert!((126.0..=128.0).contains(&all), "{all}");
     }
@@ -199,7 +196,7 @@ mod tests {
                 let want = libm::exp(libm::log1p(part.into()) * f64::from(power));
                 let got = f64::from(scaled_power_of_growth(1.0, part, power, 0.5));
                 if want < 2.4e-38 {
-                    // It ends at 2⁻¹²⁶, 1.2e-38.
+                    // Powers below 2⁻¹²⁶ = 1.2e-38 are 0.
                     assert!(got <= want, "{part} {power}: {got}");
                     continue;
                 }

@@ -9,7 +9,7 @@ use microfacet_tables::{GAMMA_MIN, Range};
 /// Why a set cannot give what was asked for: a lobe or an albedo.
 #[derive(Clone, PartialEq)]
 pub enum MaterialError {
-    /// A roughness, or an entry of an ellipsoid's matrix, that single precision cannot hold, or
+    /// A roughness, or an entry of an ellipsoid's matrix, out of the range of single precision, or
     /// NaN.
     Sigma {
         /// The roughness asked for.
@@ -31,7 +31,7 @@ pub enum MaterialError {
     NoTable(String),
     /// No table of the set holds the albedo of this dielectric.
     DielectricNotCovered {
-        /// Its index of refraction, inside over outside.
+        /// The index of refraction, inside over outside.
         eta: f64,
         /// Its σ.
         sigma: f64,
@@ -42,7 +42,7 @@ pub enum MaterialError {
         /// The dielectrics that are covered, for that form and any other.
         covered: String,
     },
-    /// A matrix, or a roughness and angles, of no ellipsoid.
+    /// A matrix, or a roughness and angles, that describe no ellipsoid.
     Skew(SkewError),
     /// γ is legal but no tables of this set serve it; `covered` lists what they serve.
     NotCovered {
@@ -55,14 +55,14 @@ pub enum MaterialError {
     MaskingNotCovered {
         /// The form asked for.
         masking: Masking,
-        /// The form that it has tables for, if any.
+        /// The form that the set has tables for, if any.
         other: Option<Masking>,
     },
     /// The albedo tables that hold γ do not hold σ.
     SigmaNotCovered {
         /// The σ asked for.
         sigma: f64,
-        /// The smallest and the largest that they hold, apart from 0, a mirror.
+        /// The smallest and the largest σ that the tables hold, apart from 0, a mirror.
         range: [f64; 2],
     },
     /// No albedo table of this set covers the pair of σ and γ; `covered` lists the pairs that are
@@ -180,7 +180,6 @@ microfacet_core::debug_in_words!(BatchError);
 
 impl core::error::Error for BatchError {}
 
-/// Checks that all slices of a batch have the length of the first.
 pub(crate) fn same_lengths(slices: &[(&'static str, usize)]) -> Result<(), BatchError> {
     let (first, expected) = slices[0];
     match slices.iter().find(|(_, length)| *length != expected) {

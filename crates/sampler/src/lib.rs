@@ -4,8 +4,8 @@
 //! The Student-t distribution of slopes (roughness σ, shape γ; Ribardière, Bringier, Meneveaux,
 //! Simonot 2017, <https://doi.org/10.1111/cgf.13137>) contains GGX (γ = 2) and Beckmann (γ = ∞) and
 //! fits measured glass and metal better than either. Its Smith masking needs a hypergeometric
-//! function, and its visible normals have no closed-form inverse; this crate looks both up. It is
-//! `no_std` with `alloc` when its default features are off.
+//! function, and its visible normals have no closed-form inverse; this crate reads both from
+//! tables. It is `no_std` with `alloc` when its default features are off.
 //!
 //! Directions are unit vectors in the tangent frame, n = +z: `v` the view, `l` the light, `m` a
 //! microfacet normal. Angles are in radians, densities per steradian.
@@ -23,10 +23,10 @@
 //!
 //! # A material
 //!
-//! Load a set once, take a lobe and make a BSDF of it for each material, and ask it for `f`, a
-//! density and samples. [`Bsdf`] has the conventions. Where light of further bounces is to come
-//! back, tables of albedos are read too. A rough [`Plastic`] reads those of its coat in any case,
-//! and the default set has none of dielectrics: bake a recipe that names it, and load that by
+//! Load a set once, and for each material make a lobe and from it a BSDF, which gives `f`, a
+//! density and samples. [`Bsdf`] has the conventions. Compensation of multiple scattering reads
+//! tables of albedos too. A rough [`Plastic`] reads those of its coat in any case, and the default
+//! set has none of dielectrics: bake a recipe that names the plastic, and load the set by
 //! [`Tables::from_bytes`].
 //!
 //! ```
@@ -59,7 +59,7 @@
 //! fn reflect(lobe: &impl MicrofacetDistribution, v: Vec3, u: [f32; 2]) -> (Vec3, f32, f32) {
 //!     let (m, pdf) = lobe.sample_with_pdf(v, u);
 //!     let l = 2.0 * v.dot(m) * m - v;
-//!     // v.m may be 0 to rounding: such a light has the weight 0 or a density of its own.
+//!     // Rounding may make v.m 0 or less: such a light has the weight 0.
 //!     let pdf = if v.dot(m) > 0.0 { pdf / (4.0 * v.dot(m)) } else { 0.0 };
 //!     (l, lobe.reflection_weight(v, l, Masking::HeightCorrelated), pdf)
 //! }
@@ -72,9 +72,9 @@
 //!
 //! # Materials by name
 //!
-//! A set baked from a recipe knows its materials, whatever their distribution, and lists them with
-//! their forms of masking in its [`Provenance`](Tables::provenance); [`Lobe`] is any of them. GTR, Gauss, Schlick and
-//! measured distributions are a [`Radial`](lobe::Radial), with tables of their own.
+//! A set baked from a recipe lists its materials, whatever their distribution, with their forms of
+//! masking in its [`Provenance`](Tables::provenance); [`Lobe`] is any of them. GTR, Gauss, Schlick
+//! and measured distributions are a [`Radial`](lobe::Radial), with tables of their own.
 //!
 //! ```no_run
 //! # use microfacet_sampler::{Lobe, MicrofacetDistribution, Tables};
@@ -104,9 +104,9 @@
 //!
 //! # Batches
 //!
-//! Over whole slices of views at a time. Student-t lobes work on four at once: the same normals, to
+//! Functions over whole slices of views. Student-t lobes compute four at once: the same normals, to
 //! 2 ulp, in 40 % of the time, and G1 in 60 % (`cargo run --profile dist -p microfacet-bench`).
-//! Other lobes answer one by one.
+//! Other lobes compute them one by one.
 //!
 //! ```
 //! # #[cfg(feature = "embedded")] {
@@ -123,10 +123,11 @@
 //!
 //! # Albedo and multiple scattering
 //!
-//! [`Bsdf`]s take care of it; [`Albedo`](albedo::Albedo) is for a BSDF of your own. It knows which share of light
-//! one bounce returns, E(v), its average, and two moments from which the albedo of every Schlick
-//! reflectance follows. Two cures for the missing light are made from it: a factor on the lobe
-//! ([`turquin`](albedo::Albedo::turquin)) and a lobe of its own ([`compensation`](albedo::Albedo::compensation)).
+//! [`Bsdf`]s compensate multiple scattering themselves; [`Albedo`](albedo::Albedo) is for a BSDF of
+//! your own. It gives the share of light that one bounce returns, E(v), its average, and two
+//! moments from which the albedo of every Schlick reflectance follows. Two compensations of the
+//! missing light are made from it: a factor on the lobe ([`turquin`](albedo::Albedo::turquin)) and
+//! a lobe of its own ([`compensation`](albedo::Albedo::compensation)).
 //!
 //! ```
 //! # #[cfg(feature = "embedded")] {
@@ -160,7 +161,7 @@ mod error;
 mod material;
 mod tables;
 
-// What every caller needs in the version that this crate is built with.
+// Callers need these in the version that this crate is built with.
 pub use glam;
 pub use microfacet_tables;
 
@@ -176,7 +177,7 @@ pub use microfacet_tables::LoadError;
 pub use tables::DEFAULT_SET;
 pub use tables::Tables;
 
-/// What [`MicrofacetDistribution`]s give and take, and those of special materials.
+/// Arguments and results of [`MicrofacetDistribution`]s, and the lobes of special materials.
 pub mod lobe {
     pub use crate::error::BatchError;
     pub use crate::material::{Bounded, BoundedView, Facet, LobeKey, Radial, Smooth};

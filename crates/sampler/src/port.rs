@@ -1,5 +1,5 @@
-//! For lookups and BSDFs written in another language: all that those of one shape read,
-//! in the form in which this crate's own have it. It may change in any release.
+//! For lookups and BSDFs in another language: the data that lookups of one shape read, laid out as
+//! in this crate. This module may change in any release.
 
 use microfacet_tables::Table;
 

@@ -12,7 +12,7 @@ use microfacet_tables::{Kind, LoadError, LobeSpec, MaterialEntry, Provenance, Ta
 use crate::error::MaterialError;
 use crate::material::{Ellipsoid, Ggx, Lobe, Radial, Smooth, StudentT, coverage};
 
-/// The default set as the bytes of a safetensors file, for those who pass it on.
+/// The default set as the bytes of a safetensors file.
 #[cfg(feature = "embedded")]
 pub const DEFAULT_SET: &[u8] = include_bytes!("../data/default.safetensors");
 
@@ -52,8 +52,9 @@ impl Tables {
     ///
     /// # Errors
     /// [`LoadError::Invalid`] for bytes that are damaged, truncated or no table set,
-    /// [`LoadError::Unsupported`] for another version of the format. Every part is checked, the
-    /// checksum included; no input makes it panic or allocate more than a few times its size.
+    /// [`LoadError::Unsupported`] for another version of the format. Everything is checked, the
+    /// checksum included; no input causes a panic, or an allocation of more than a few times its
+    /// size.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, LoadError> {
         let (provenance, tables) = decode(bytes, true)?;
         Ok(Self { provenance, tables })
@@ -70,7 +71,7 @@ impl Tables {
         Ok(Self { provenance, tables })
     }
 
-    /// The set of some of its materials, without the tables that serve lobes of others alone.
+    /// The set of the named materials alone, without tables that none of them reads.
     ///
     /// # Errors
     /// [`MaterialError::NoSuchMaterial`] naming those that exist.
@@ -89,7 +90,8 @@ impl Tables {
         Ok(self)
     }
 
-    /// One set of the materials and tables of several; a table that some of them share, once.
+    /// One set of the materials and tables of several sets; a table that several of them have is
+    /// kept once.
     ///
     /// # Errors
     /// [`LoadError::Invalid`] if two sets have different tables, or different materials, of the
@@ -197,8 +199,7 @@ impl Tables {
         }
     }
 
-    /// An ellipsoid: a Student-t lobe of shape γ ∈ (3/2, ∞] seen through a matrix, tilted and
-    /// turned.
+    /// An ellipsoid: a Student-t lobe of shape γ ∈ (3/2, ∞], tilted and turned by a matrix.
     ///
     /// It reads the same tables as [`student_t`](Self::student_t), at γ = 2 too.
     ///
@@ -231,10 +232,10 @@ impl Tables {
         }
     }
 
-    /// This set with the default set behind it: shapes that its own tables do not cover are read
-    /// from the default set.
+    /// This set, extended by the default set: shapes that its own tables do not cover are read from
+    /// the default set.
     ///
-    /// For lookups; names of tables may then repeat, which a file does not allow.
+    /// For lookups only: names of tables may then repeat, which a file does not allow.
     #[cfg(feature = "embedded")]
     pub fn or_embedded(mut self) -> Self {
         self.tables.extend(Self::embedded().tables);

@@ -1,4 +1,4 @@
-//! What albedos are used for: reflectances made from moments, and the lobe of all further bounces.
+//! Uses of albedos: reflectances from moments, and the lobe of all further bounces.
 
 use glam::Vec3;
 use microfacet_model::fresnel::{F82Tint, schlick_weight};
@@ -9,7 +9,6 @@ use microfacet_tables::{Kind, Table};
 
 const COSINES: [f32; 5] = [0.02, 0.1, 0.35, 0.8, 1.0];
 
-/// A view at this cosine.
 fn view(cos: f32) -> Vec3 {
     Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos)
 }
@@ -54,7 +53,7 @@ fn moments_make_the_albedo_of_every_tinted_metal() {
                     "sigma {sigma}, gamma {gamma}, {masking:?}, {cos}, F0 {f0}, tint {tint}"
                 );
                 assert!((f64::from(got) - want).abs() < 3e-4, "{at}: {got} for {want}");
-                // Without a tint it is Schlick's, and a tint takes light away.
+                // Without a tint the reflectance is Schlick's, and a tint lowers it.
                 let plain = albedo.moments(view(cos)).schlick(f0 as f32, 1.0);
                 assert!(if tint == 1.0 { got == plain } else { got < plain }, "{at}");
             }
@@ -82,8 +81,7 @@ fn by_sampling(albedo: &Albedo, f: impl Fn(Vec3) -> f32) -> f64 {
 fn lights_of_the_compensation_have_its_density() {
     let albedo = Tables::embedded().albedo(0.5, 2.0, Masking::HeightCorrelated).unwrap();
     let pi = std::f64::consts::PI;
-    // Integrals over the hemisphere that any other density would miss: by height, by azimuth, and
-    // both.
+    // Integrals over the hemisphere that detect other densities: by height, by azimuth, and both.
     type Integrand = fn(Vec3) -> f32;
     let sums: [(f64, Integrand); 5] = [
         (pi, |l| l.z),
@@ -117,7 +115,7 @@ fn the_compensation_returns_what_is_lost() {
     });
 }
 
-/// The albedo of (σ, γ), refused: the message.
+/// The message with which the albedo of (σ, γ) is refused.
 fn refused(set: &Tables, sigma: f64, gamma: f64, masking: Masking) -> String {
     let average = set.average_moments(sigma, gamma, masking).unwrap_err().to_string();
     let message = set.albedo(sigma, gamma, masking).unwrap_err().to_string();
@@ -125,7 +123,6 @@ fn refused(set: &Tables, sigma: f64, gamma: f64, masking: Masking) -> String {
     message
 }
 
-/// The default set without some of its tables.
 fn without(drop: impl Fn(&Table) -> bool) -> Tables {
     let set = Tables::embedded();
     let kept = set.tables().iter().filter(|table| !drop(table)).cloned().collect();
@@ -151,7 +148,8 @@ fn what_no_albedo_table_covers_is_refused_with_what_they_cover() {
         let message = refused(&set, 0.3, 1.5005, masking);
         assert!(message.contains("gamma [1.501, inf] with sigma 0 or [1e-8, 3]"), "{message}");
     }
-    // A set that has γ = 3, but no albedo of it, does not ask for a recipe line `gamma = 3`.
+    // Where a set has γ = 3, but no albedo of it, the message does not propose a recipe line
+    // `gamma = 3`.
     let message =
         refused(&without(|table| table.kind.is_albedo()), 0.3, 3.0, Masking::Uncorrelated);
     assert!(message.contains("nor for any other"), "{message}");
@@ -182,7 +180,8 @@ fn a_lobe_that_is_not_covered_is_told_what_the_set_serves() {
     assert!(message.ends_with("serve none") && set.shapes().is_empty(), "{message}");
 }
 
-/// A table that says it covers shapes beyond its axis would promise what no lobe can have.
+/// A table whose description covers shapes beyond its axis is refused, since no lobe could be made
+/// of them.
 #[test]
 fn what_a_table_covers_lies_on_its_axis() {
     for kind in [Kind::VisibleSlope, Kind::Albedo] {

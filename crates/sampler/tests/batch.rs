@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use microfacet_sampler::lobe::BatchError;
 use microfacet_sampler::{MicrofacetDistribution, StudentT, Tables};
 
-/// Views of the whole hemisphere and a little below it, the axes, and vectors that are no
+/// Views of the whole hemisphere and a little below it, the axes, and vectors that are not
 /// directions; random numbers with both ends and beyond.
 fn inputs(count: usize) -> (Vec<Vec3>, Vec<[f32; 2]>) {
     let mut rng = StdRng::seed_from_u64(5);

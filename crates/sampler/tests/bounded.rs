@@ -33,7 +33,6 @@ fn weight(material: &StudentT, v: Vec3, m: Vec3) -> f64 {
     }
 }
 
-/// Midpoints of an n × n grid of the unit square.
 fn grid(n: u32) -> impl Iterator<Item = [f32; 2]> {
     let at = move |i: u32| (i as f32 + 0.5) / n as f32;
     (0..n).flat_map(move |i| (0..n).map(move |j| [at(i), at(j)]))
@@ -60,8 +59,8 @@ fn bounding_changes_no_mean_and_lowers_the_variance() {
                 }
             }
             let what = format!("{:?} {} {v}: {means:?}", material.sigma(), material.gamma());
-            // The midpoint rule errs at a jump along a curve by a part of the cells that the curve
-            // crosses.
+            // The midpoint rule errs at a jump along a curve by a fraction of the cells that the
+            // curve crosses.
             assert!((means[0] - means[1]).abs() < 2.0 / f64::from(n), "{what}");
             let variance = |i: usize| squares[i] - means[i] * means[i];
             assert!(variance(1) <= variance(0) + 0.01, "{what} {} {}", variance(0), variance(1));

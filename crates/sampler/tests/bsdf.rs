@@ -1,5 +1,5 @@
-//! Complete BSDFs: values against Walter et al. 2007 in double precision, what is a delta, and what
-//! is refused.
+//! Complete BSDFs: values against Walter et al. 2007 in double precision, delta events, and refused
+//! arguments.
 
 #![cfg(feature = "embedded")]
 
@@ -21,7 +21,7 @@ fn direction(theta: f64, phi: f64) -> Vec3 {
     DVec3::new(sin * phi.cos(), sin * phi.sin(), cos).as_vec3()
 }
 
-/// A direction of the sphere, no closer to the horizon than one part in a hundred.
+/// A direction of the sphere with |cos θ| > 0.01.
 fn any_direction(random: &mut StdRng) -> Vec3 {
     loop {
         let z: f64 = random.random_range(-1.0..1.0);
@@ -31,8 +31,8 @@ fn any_direction(random: &mut StdRng) -> Vec3 {
     }
 }
 
-/// GGX as Walter et al. 2007 have it, in double precision, with n_o and n_i the indices on the
-/// sides of view and light.
+/// GGX by Walter et al. 2007 in double precision; n_o and n_i are the indices on the sides of view
+/// and light.
 struct Walter {
     alpha: f64,
 }
@@ -61,7 +61,8 @@ impl Walter {
         fresnel(i.dot(h).abs()) * g * self.d(h) / (4.0 * i.z.abs() * o.z.abs())
     }
 
-    /// Of the cosines of view and light at the facet that refracts the one into the other.
+    /// The smaller of the cosines of view and light at the facet that refracts the one into the
+    /// other.
     fn smaller_cosine(&self, o: DVec3, i: DVec3, n_o: f64, n_i: f64) -> f64 {
         let h = (n_i * i + n_o * o).normalize();
         i.dot(h).abs().min(o.dot(h).abs())
@@ -83,9 +84,9 @@ impl Walter {
     }
 }
 
-/// Smaller cosines of facets are off by more than 1e-5 of themselves in single precision.
+/// Smaller cosines of facets have a relative error above 1e-5 in single precision.
 const EDGE_ON: f64 = 0.01;
-/// Squares of cosines that are closer to that of the critical angle are off likewise.
+/// The same holds where squares of cosines are closer to that of the critical angle.
 const CRITICAL: f64 = 1e-3;
 
 /// Eq. 22, with the index on the other side over that on the side of c.
@@ -164,7 +165,7 @@ fn ggx_is_that_of_walter() {
                         }
                     } else {
                         let want = truth.transmission(o, i, n_o, n_i);
-                        // Of a facet seen edge-on the cosine is its own rounding.
+                        // The cosine of a facet seen edge-on is mostly rounding.
                         if truth.smaller_cosine(o, i, n_o, n_i) > EDGE_ON {
                             compare(got, want, &mut worst, &mut counts[2]);
                         }
@@ -177,7 +178,7 @@ fn ggx_is_that_of_walter() {
     }
 }
 
-/// Importance lacks the factor of radiance, and reflection knows no difference.
+/// Importance lacks the factor of radiance; reflection is the same for both.
 #[test]
 fn importance_is_radiance_without_its_scale() {
     let glass = Dielectric::new(Ggx::new(0.3).unwrap(), 1.5).unwrap();
@@ -219,7 +220,6 @@ fn plastic<L: MicrofacetDistribution, const N: usize>(
     Plastic::new(lobe, eta, base, &Tables::embedded(), Compensation::None, StandIn::Refused)
 }
 
-/// Nothing happens to light where nothing changes.
 #[test]
 fn an_index_of_one_lets_all_light_straight_on() {
     for eta in [1.0, 1.0 + 5e-6, 1.0 - 5e-6] {
@@ -235,7 +235,7 @@ fn an_index_of_one_lets_all_light_straight_on() {
             assert_eq!(air.eval_pdf(v, -v, RADIANCE), ([0.0; 3], 0.0));
         }
     }
-    // Just beyond it is a rough interface again.
+    // Just beyond the limit of 1e-5 the interface is rough again.
     let thin = Dielectric::new(Ggx::new(0.5).unwrap(), 1.000_02).unwrap();
     assert!(!Bsdf::<3>::is_delta(&thin));
 }
@@ -255,7 +255,7 @@ fn smooth_lobes_are_deltas() {
         assert_eq!(gold.eval_pdf(v, mirrored, RADIANCE), ([0.0; 3], 0.0));
         assert!(gold.sample(-v, 0.5, [0.2, 0.9], RADIANCE).is_none());
 
-        // No tables are needed for what loses nothing.
+        // A smooth surface loses nothing, so that no tables are needed.
         let glass = Dielectric::new(lobe.clone(), 1.5).unwrap();
         let glass = glass.compensated(&tables, Compensation::Turquin, StandIn::Refused).unwrap();
         let reflected = walter_fresnel(1.5, v.z.into()) as f32;
@@ -287,14 +287,14 @@ fn smooth_lobes_are_deltas() {
     }
 }
 
-/// Smooth white plastic returns all light.
 #[test]
 fn smooth_white_plastic_returns_all_light() {
     for eta in [1.05, 1.5, 3.0, 1.0 / 1.5] {
         let white = plastic(Smooth, eta, [1.0]).unwrap();
         for cos in [0.02_f32, 0.3, 1.0] {
             let v = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
-            // The weight of either part is all that returns, times its share over its probability.
+            // The weight of coat or base is its share of the light that returns over its
+            // probability.
             let coat = walter_fresnel(f64::from(eta as f32), cos.into());
             let n = 4000;
             let base: f64 = (0..n)
@@ -324,7 +324,7 @@ fn conductors_and_plastics_are_black_from_below_and_all_is_for_directions_in_the
     }
     assert!(gold.sample(below, 0.5, u, RADIANCE).is_none());
     assert!(paint.sample(below, 0.5, u, RADIANCE).is_none());
-    // A mirror knows its view's image without looking at all of it.
+    // A mirror does not use every component of a view; NaN in any must still be refused.
     let mirror = Conductor::new(Smooth, Metal::Gold);
     for strange in [f32::NAN, f32::INFINITY].map(|x| Vec3::new(x, 0.0, 0.5)) {
         assert!(mirror.sample(strange, 0.5, u, RADIANCE).is_none());
@@ -391,7 +391,7 @@ fn what_tables_lack_is_said_and_the_lines_that_add_it_are_data() {
     assert!(!text.contains("[[material]]"), "{text}");
     let recipe = refused.recipe().unwrap();
     assert!(recipe.contains("sigma = [0.4, 0.1]\ngamma = 3\nfresnel = \"mirror\""), "{recipe}");
-    // What a program shows that returns it from `main`.
+    // A program that returns the error from `main` shows its debug form.
     assert_eq!(format!("{refused:?}"), text);
     // Without compensation none is needed, and the round lobe may stand in.
     gold.clone().compensated(&tables, Compensation::None, StandIn::Refused).unwrap();
@@ -412,7 +412,7 @@ fn what_tables_lack_is_said_and_the_lines_that_add_it_are_data() {
     assert!(why.to_string().contains("1.5"), "{why}");
     assert!(plastic(tables.student_t(0.3, 3.0).unwrap(), 1.5, [0.5]).is_err());
 
-    // A lobe of one's own has a name in no table.
+    // No table has a key of a user's own lobe.
     struct Own(Ggx);
     impl MicrofacetDistribution for Own {
         fn d(&self, m: Vec3) -> f32 {
@@ -444,8 +444,8 @@ fn what_tables_lack_is_said_and_the_lines_that_add_it_are_data() {
     assert!(matches!(why, Err(BindError::NoAlbedo { stand_in: false, .. })));
 }
 
-/// A renderer that evaluates the density of a direction that was sampled finds it again: what
-/// single precision cannot tell from v and l is flagged as only sampled, and keeps its weight.
+/// The density of a sampled direction equals the density evaluated for it: facets that single
+/// precision cannot find from v and l are flagged as only sampled, and keep their weight.
 #[test]
 fn densities_of_refracted_light_are_found_again() {
     let tables = Tables::embedded();

@@ -26,8 +26,8 @@ const CASES: [[f64; 5]; 12] = [
     [0.4, 0.1, f64::INFINITY, 1.3, -0.7],
 ];
 const SAMPLES: usize = 200_000;
-/// Probability that a correct sampler would fail this file's tests; with fixed seeds it was spent
-/// once.
+/// Probability that a correct sampler would fail this file's tests, for one choice of the fixed
+/// seeds.
 const LEVEL: f64 = 0.01;
 
 fn judge(case: &[f64; 5], gamma_of_truth: f64, samples: usize) -> NormalsTest {

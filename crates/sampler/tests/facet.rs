@@ -1,4 +1,4 @@
-//! A facet is what the separate functions of its lobe say, whatever the length of the normal.
+//! A facet agrees with the separate functions of its lobe, whatever the length of the normal.
 
 use glam::Vec3;
 
@@ -25,7 +25,7 @@ fn check(name: &str, lobe: &impl MicrofacetDistribution) {
                 let pdf = f64::from(lobe.visible_normal_pdf(v, m));
                 let facing = f64::from(v.dot(m));
                 let got = f64::from(facet.density) * facing;
-                // As D's, and where the rounding of the half vector's length counts.
+                // The tolerance of D, and the rounding of the half vector's length.
                 let tolerance = 4e-6 * (1.0 + f64::from(lobe.d(m)).max(1e-38).ln().abs());
                 let lost = facet.density == f32::MAX || pdf < 1e-35;
                 assert!(
@@ -93,7 +93,7 @@ fn check_reflecting(name: &str, lobe: &impl MicrofacetDistribution) {
             assert!((1e-36..1e36).contains(&length2), "{name} {v} {u:?}: {m}");
             let unit = m / length2.sqrt();
             assert!((unit - want).length() < 4e-7, "{name} {v} {u:?}: {unit} for {want}");
-            // On the silhouette rounding decides, and the light would be straight below the view.
+            // On the silhouette v·m may be negative by rounding.
             let facing = v.dot(m) / length2.sqrt();
             assert!(facing > -5e-7, "{name} {v} {u:?}: {facing}");
         }
@@ -114,7 +114,8 @@ fn normals_that_reflect_are_the_visible_ones_of_any_length() {
     check_reflecting("tilted", &tables.ellipsoid(skew, 2.5).unwrap());
 }
 
-/// A matrix may leave of a steep normal no more than z had before the heavy part shrank it.
+/// A matrix may reduce a steep normal to the size that its z had before the factor of the heavy
+/// part.
 #[test]
 fn normals_of_almost_singular_matrices_are_of_unit_length() {
     let tables = Tables::embedded();

@@ -53,7 +53,7 @@ fn normals_have_the_analytic_distribution() {
         let outcome = judge(sigma, view, 2.0);
         assert!(outcome.p() > level, "{sigma:?} {view:?}: {outcome:?}");
     }
-    // The test can fail: it sees another shape.
+    // The test detects another shape.
     assert!(judge([0.3, 0.3], [0.8, -2.5], 2.1).p() < level);
 }
 
@@ -76,7 +76,7 @@ fn normals_are_visible_at_every_corner() {
     }
 }
 
-/// A set as a plan makes it for a scene of GGX alone: a name, and no table.
+/// The set of a scene of GGX alone, as a plan makes it: a name, and no table.
 fn without_tables() -> Tables {
     let gold = MaterialEntry {
         name: "gold".into(),

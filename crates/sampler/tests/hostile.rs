@@ -1,5 +1,5 @@
-//! Hostile bytes and arguments: damaged, truncated and lying table files; directions and numbers
-//! out of their domain.
+//! Hostile bytes and arguments: damaged, truncated and inconsistent table files; directions and
+//! numbers out of their domain.
 
 use glam::Vec3;
 
@@ -385,7 +385,7 @@ fn halves_of_numbers_that_a_kind_does_not_have_are_refused() {
 
 #[test]
 fn a_newer_version_says_so() {
-    // With a key that this version cannot know.
+    // With a key that this version does not have.
     let now = format!(r#"\"version\":{VERSION}"#);
     let newer = forge(&now, &format!(r#"\"version\":{},\"weather\":\"fine\""#, VERSION + 1));
     let Err(LoadError::Unsupported(why)) = Tables::from_bytes(&newer) else { panic!("loaded") };
@@ -430,8 +430,8 @@ fn headers_longer_than_files_and_towers_of_brackets_are_refused() {
     );
 }
 
-/// The sampler answers whatever it is given; for finite views of some length, with values in range
-/// and normals above the horizon.
+/// No argument causes a panic; finite views that are not too short give values in range and normals
+/// above the horizon.
 #[test]
 fn directions_and_numbers_out_of_their_domain_are_answered() {
     let tables = Tables::embedded();
@@ -500,7 +500,7 @@ fn random_numbers_are_clamped() {
                 let student_t = tables.student_t(0.5, gamma).unwrap();
                 let bounded_lobe = student_t.clone().bounded();
                 let ellipsoid = tables.ellipsoid(tilted, gamma).unwrap();
-                // The last looks at the ellipsoid from below the horizon of its own space.
+                // The last view is below the horizon of the ellipsoid's unit space.
                 for v in [[0.6, 0.0, 0.8], [0.0, 0.0, 1.0], [-0.8, 0.6, 1e-4], [0.0, -0.99, 0.05]] {
                     let v = Vec3::from(v).normalize();
                     let lobes: [Lobe; 3] = [

@@ -24,8 +24,8 @@ fn ratio(lobe: &impl MicrofacetDistribution, v: Vec3, u: [f32; 2], what: &str) -
     if pdf == 0.0 { 0.0 } else { f64::from(pdf) / f64::from(table) }
 }
 
-/// Rounding puts a slope that was drawn at a node on either side of it. Dyadic numbers are nodes,
-/// and low-discrepancy sequences consist of them.
+/// Rounding puts a slope that was drawn at a node on either side of the node. Dyadic numbers are
+/// nodes, and low-discrepancy sequences consist of them.
 #[test]
 fn no_drawn_normal_has_the_density_zero() {
     const NUMBERS: [f32; 7] =
@@ -46,7 +46,8 @@ fn no_drawn_normal_has_the_density_zero() {
                     }
                 }
             }
-            // At the ends either density may vanish; at the silhouette both are rounding.
+            // At the ends either density may vanish; at the silhouette both are dominated by
+            // rounding.
             for v in [direction(&mut random), Vec3::X, Vec3::new(0.6, 0.0, 0.8), Vec3::Z] {
                 for u in [[0.0, 0.3], [0.3, 0.0], [1.0, 0.3], [0.3, 1.0], [0.0, 1.0], [1.0, 0.0]] {
                     let ratio = ratio(&lobe, v, u, &what);

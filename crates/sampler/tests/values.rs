@@ -174,8 +174,8 @@ fn beckmann_is_zero_on_the_horizon() {
     }
 }
 
-/// Rounding to 16 bits parts the halves of the random numbers by up to 1e-3 where they meet; the
-/// samples would leave out, or draw twice, what is between.
+/// Rounding to 16 bits separates the halves of the random numbers by up to 1e-3 where they meet;
+/// samples would leave out the gap, or draw it twice.
 #[test]
 fn slopes_are_continuous_at_one_half_at_every_precision() {
     let set = Tables::embedded();

@@ -1,4 +1,4 @@
-//! Why there is no replacement.
+//! Errors of conversions.
 
 use microfacet_baker::distribution::{DistributionError, DistributionKind};
 
@@ -27,10 +27,10 @@ pub enum ConvertError {
          half-angle and rmse work between any two", .0.name(), .1.name()
     )]
     NoFormula(DistributionKind, DistributionKind),
-    /// What a published formula gives cannot be used; where it is printed.
+    /// The result of a published formula is out of range; where the formula is printed.
     #[error("{0} gives {1}; use half-angle or rmse")]
     OfFormula(&'static str, DistributionError),
-    /// D is so large or so small that errors are no numbers.
+    /// D is so large or so small that errors overflow.
     #[error(
         "D is too large or too small for double precision; use a roughness in [1e-8, 1e6], and \
          measured angles further apart"

@@ -1,10 +1,10 @@
-//! The formulas that are published for replacing one distribution by another.
+//! Published formulas for replacing one distribution by another.
 //!
-//! Sawicki's equations 12, 14 and 15 are lines through what table 2 bends a little: the rows alone
-//! would give 2.35 to 2.75 for the 2.5 of equation 12, 0.55 to 0.583 for the 0.5591 of 13, 0.46 to
-//! 0.417 for the 0.5 of 14 and 1.204 to 1.174 for the 1.174 of 15, each from rough to smooth
-//! (`cargo run --release -p microfacet-study -- sawicki`, which also has the largest error of each
-//! formula against the table: 2 % in N by equation 12, else 1.4 %).
+//! Sawicki's equations 12, 14 and 15 are lines through slightly curved columns of table 2: single
+//! rows would give 2.35 to 2.75 for the 2.5 of equation 12, 0.55 to 0.583 for the 0.5591 of 13,
+//! 0.46 to 0.417 for the 0.5 of 14 and 1.204 to 1.174 for the 1.174 of 15, each from rough to
+//! smooth (`cargo run --release -p microfacet-study -- sawicki`, which also has the largest error
+//! of each formula against the table: 2 % in N by equation 12, else 1.4 %).
 
 use std::f64::consts::{FRAC_PI_2, LN_2, SQRT_2};
 
@@ -18,9 +18,9 @@ use super::{ConvertError, Replacement, Target, table};
 /// A published formula between two kinds of distributions of one parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct Formula {
-    /// What it takes the parameter of.
+    /// The kind of distribution whose parameter the formula takes.
     pub from: DistributionKind,
-    /// What it gives the parameter of.
+    /// The kind of distribution whose parameter the formula gives.
     pub to: DistributionKind,
     /// Where it is printed.
     pub source: &'static str,
@@ -37,7 +37,7 @@ const EQ_14_15: &str = "Sawicki 2021, eq. 14 and 15";
 const EQ_12_15: &str = "Sawicki 2021, eq. 12 and 15";
 const TABLES: &str = "Sawicki 2021, tables 3 and 4";
 
-/// N of a Beckmann, and back, by N = 2/m² − `less`; so too of a Gauss.
+/// N of a Beckmann or a Gauss of width m, N = 2/m² − `less`.
 fn n_of(m: f64, less: f64) -> f64 {
     2.0 / (m * m) - less
 }
@@ -64,7 +64,7 @@ fn n_of_c(c: f64) -> f64 {
 
 type Row = (DistributionKind, DistributionKind, &'static str, fn(f64) -> f64);
 
-/// All of them, in the order in which they are printed.
+/// All published formulas, by source.
 ///
 /// Walter et al. 2007, *Microfacet Models for Refraction through Rough Surfaces*,
 /// doi:10.2312/EGWR/EGSR07/195-206; Sawicki 2021, doi:10.5220/0010252702090220.
@@ -81,7 +81,7 @@ const ALL: [Row; 26] = [
     (BlinnPhong, Gauss, EQ_14, |n| m_of(n, 0.5)),
     (BlinnPhong, Sawicki, EQ_15, sawicki_of_n),
     (Sawicki, BlinnPhong, EQ_15, n_of_sawicki),
-    // Each of these goes through Blinn–Phong.
+    // The following four go through Blinn–Phong.
     (Gauss, Sawicki, EQ_14_15, |m| sawicki_of_n(n_of(m, 0.5))),
     (Sawicki, Gauss, EQ_14_15, |n| m_of(n_of_sawicki(n), 0.5)),
     (Beckmann, Sawicki, EQ_12_15, |m| sawicki_of_n(n_of(m, 2.5))),
@@ -94,7 +94,7 @@ const ALL: [Row; 26] = [
     (Beckmann, TrowbridgeReitz, TABLES, |m| 1.2 * m - 0.56 * m.powi(3)),
     (BlinnPhong, TrowbridgeReitz, TABLES, c_of_n),
     (Sawicki, TrowbridgeReitz, TABLES, |n| c_of_n(n_of_sawicki(n))),
-    // It approximates Beckmann at the same m: "no conversion is needed".
+    // Schlick approximates Beckmann at the same m: "no conversion is needed".
     (Beckmann, Schlick, "Sawicki 2021: the same m", |m| m),
     (Schlick, Beckmann, "Sawicki 2021: the same m", |m| m),
 ];
@@ -127,8 +127,8 @@ impl Formula {
 /// | 9 | Beckmann | m = tan h/√(ln 2 − 4 ln cos h) |
 /// | 10 | Sawicki | N = (cos h + 3 − 4 ∜(2 cos h))/(cos h − 1) |
 ///
-/// They are formed by 1 − cos h = 2 sin² h/2, which keeps its digits as h → 0: the half angle of
-/// what they give is `h` to 1e-12. `None` for other kinds, unless 0 < h < π/2, and where the
+/// They are computed from 1 − cos h = 2 sin² h/2, which keeps its digits as h → 0: the half angle
+/// of the result is `h` to 1e-12. `None` for other kinds, unless 0 < h < π/2, and where the
 /// parameter is out of the kind's range, as Sawicki's is above h = 1.3628.
 pub fn half_angle_parameter(kind: DistributionKind, h: f64) -> Option<f64> {
     let (sin, cos) = h.sin_cos();
@@ -150,8 +150,8 @@ pub fn formulas() -> impl Iterator<Item = Formula> {
     ALL.into_iter().map(|(from, to, source, value)| Formula { from, to, source, value })
 }
 
-/// What each published formula from one distribution to another gives, in the order of
-/// [`formulas`]; one whose result is out of range says so in its place.
+/// The results of all published formulas from one distribution to another, in the order of
+/// [`formulas`]; an error for each result out of range.
 ///
 /// # Errors
 /// [`ConvertError::NoFormula`] if there is none; [`ConvertError::Distribution`] if `from` is none.

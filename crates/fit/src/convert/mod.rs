@@ -3,8 +3,8 @@
 //!
 //! After Sawicki 2021, *Microfacet Distribution Function: To Change or Not to Change, That Is the
 //! Question* (<https://doi.org/10.5220/0010252702090220>): the error of a replacement is the root
-//! mean square of the difference over a uniform grid of θ in [0, π/2). [`table`] has his table 2,
-//! whose grids end earlier.
+//! mean square of the difference over a uniform grid of θ in [0, π/2). [`table`] recomputes his
+//! table 2, whose grids end earlier.
 
 use microfacet_baker::distribution::Named;
 

@@ -1,5 +1,5 @@
 //! Table 2 of Sawicki 2021 (doi:10.5220/0010252702090220): the distributions of least RMSE to a
-//! Beckmann, ours and as printed.
+//! Beckmann, as printed and recomputed.
 //!
 //! The errors are those of D/D(0) on uniform grids of θ. Where the grids end is not printed, and
 //! was found from the errors: the integral of the squared difference, divided by the square of the
@@ -19,7 +19,8 @@ use microfacet_baker::progress::Stage;
 
 use super::{ConvertError, Form, Target};
 
-/// The table as printed; m_B, N by equation 11 with its RMSE, then four parameters with theirs.
+/// The table as printed: m_B, N by equation 11 with its RMSE, then four parameters, each with its
+/// RMSE.
 const PRINTED: &str = include_str!("sawicki-2021-table-2.csv");
 
 /// Where the grid of each row ends, in radians.
@@ -30,18 +31,18 @@ const ENDS: [f64; 17] = [
 /// Steps of each grid; 100 give the same parameters to 2e-5.
 const STEPS: usize = 1000;
 
-/// What is fitted: each has two columns after the first three, of its parameter and of its RMSE.
+/// The fitted kinds: each has two columns after the first three, its parameter and its RMSE.
 pub const FITTED: [DistributionKind; 4] = [BlinnPhong, Gauss, Sawicki, TrowbridgeReitz];
 /// Names of the columns, in the order of the file.
 pub const COLUMNS: [&str; 11] =
     ["m_B", "2/m_B^2", "RMSE", "N", "RMSE", "m_G", "RMSE", "N_DS", "RMSE", "C_TR", "RMSE"];
 
-/// One value: as printed, and ours.
+/// One value, as printed and recomputed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Value {
     /// As printed, with its digits.
     pub printed: &'static str,
-    /// Ours, to all digits.
+    /// The recomputed value.
     pub ours: f64,
 }
 
@@ -51,7 +52,7 @@ impl Value {
         number(self.printed)
     }
 
-    /// Ours, to the digits that are printed.
+    /// The recomputed value, rounded to the printed digits.
     pub fn rounded(&self) -> String {
         let (mantissa, exponent) = self.printed.split_once('e').unwrap_or((self.printed, ""));
         let places = mantissa.split_once('.').map_or(0, |(_, places)| places.len());
@@ -61,12 +62,12 @@ impl Value {
         }
     }
 
-    /// Whether ours is the printed one, to the digits that are printed.
+    /// Whether the recomputed value equals the printed one to the printed digits.
     pub fn agrees(&self) -> bool {
         self.rounded() == self.printed
     }
 
-    /// Ours over the printed one, less 1.
+    /// The recomputed value over the printed one, less 1.
     pub fn deviation(&self) -> f64 {
         self.ours / self.number() - 1.0
     }
@@ -80,7 +81,7 @@ fn printed() -> impl Iterator<Item = Vec<&'static str>> {
     PRINTED.lines().skip(1).map(|line| line.split(',').collect())
 }
 
-/// The range of a kind's parameter in the table; `None` for kinds that it has not.
+/// The range of a kind's parameter in the table; `None` for kinds that the table does not have.
 pub(super) fn printed_range(kind: DistributionKind) -> Option<[f64; 2]> {
     let column = match kind {
         Beckmann => 0,
@@ -91,11 +92,11 @@ pub(super) fn printed_range(kind: DistributionKind) -> Option<[f64; 2]> {
 }
 
 /// The rows of the table, each with the values of [`COLUMNS`]; the first two, m_B and the N of
-/// equation 11, say what the row is of, and ours are what was taken for them. Each row is one step
-/// of the stage.
+/// equation 11, identify the row, and their recomputed values are the inputs of the computation.
+/// Each row is one step of the stage.
 ///
 /// # Errors
-/// [`ConvertError::Minimiser`] with the minimiser's own message.
+/// [`ConvertError::Minimiser`] with the message of the minimiser.
 pub fn rows(stage: &Stage) -> Result<Vec<Vec<Value>>, ConvertError> {
     let all: Vec<_> = printed().zip(ENDS).collect();
     stage.split(all.len());
@@ -148,7 +149,7 @@ mod tests {
         // 0.01910 for 0.001910.
         let slip = &rows[4][6];
         assert!(slip.printed == "0.01910" && (slip.ours - 0.00191).abs() < 1e-6, "{slip:?}");
-        // Beyond the printed range there is nothing to add: only the number of angles grows.
+        // Beyond the printed range the difference is negligible: only the number of angles grows.
         let beckmann = Beckmann.build(&[0.2]).unwrap();
         let phong = BlinnPhong.build(&[47.33]).unwrap();
         let of = |end| Target::up_to(&*beckmann, end, 4000).rmse(&*phong, Form::Relative);

@@ -9,7 +9,6 @@ fn named(text: &str) -> Named {
     text.parse().unwrap()
 }
 
-/// The nearest of a kind to a distribution by its text.
 fn nearest(text: &str, to: DistributionKind, form: Form) -> Replacement {
     let built = named(text).build().unwrap();
     Target::new(&*built).by_rmse(to, form, &Stage::unwatched()).unwrap()

@@ -17,41 +17,40 @@ pub(super) const CELLS: usize = DIMENSIONS[0] * DIMENSIONS[1] * DIMENSIONS[2];
 /// Bytes of a file: three 32-bit dimensions, then the channels red, green and blue in doubles.
 pub const BYTES: usize = HEADER + 3 * 8 * CELLS;
 const HEADER: usize = 3 * 4;
-/// What a number of each channel is multiplied with to be a reflectance in 1/sr.
+/// Factors from the numbers of each channel to reflectances in 1/sr.
 const SCALES: [f64; 3] = [1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0];
 pub(super) const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 
-/// The place of a value in its cell, as a share of it along each axis.
+/// The position of a value in its cell, from 0 to 1 along each axis.
 ///
 /// The reader that comes with the database rounds an angle down to its cell, so that the value of
-/// cell i stands for [i, i + 1): it is taken as that of the middle, i + ½.
+/// cell i stands for [i, i + 1), and is taken to be that of the middle, i + ½.
 pub const MIDDLE: f64 = 0.5;
 
-/// The largest reflectance that is taken, in 1/sr: a mirror at the resolution of the format has
-/// less.
+/// The largest accepted reflectance, in 1/sr: a mirror at the resolution of the format has less.
 pub(super) const LARGEST: f64 = 1e9;
-/// The smallest mean reflectance that is taken, in 1/sr: the blackest paint has more.
+/// The smallest accepted mean reflectance, in 1/sr: the blackest paint has more.
 pub(super) const DARKEST: f64 = 1e-5;
 
-/// Why a file is none of the database, or cannot be fitted.
+/// Errors of reading a file of the database and of fitting it.
 #[derive(thiserror::Error)]
 pub enum MerlError {
     /// The operating system's error.
     #[error(transparent)]
     Io(#[from] io::Error),
-    /// The dimensions at the head of the file are others.
+    /// The dimensions at the head of the file are not those of the database.
     #[error(
         "is no full-size MERL file: its first {HEADER} bytes give the dimensions {}, and must give \
          {}", by(.0), by(&DIMENSIONS)
     )]
     Dimensions([u32; 3]),
-    /// The number of bytes does not belong to the dimensions.
+    /// The number of bytes does not match the dimensions.
     #[error(
         "has {0} bytes, and a MERL file of {cells} cells has {BYTES}; get it again, it is damaged",
         cells = by(&DIMENSIONS)
     )]
     Length(usize),
-    /// A value, in 1/sr, that is no number or above 1e9: its channel, its cell and itself.
+    /// A value that is NaN or above 1e9/sr: channel, cell and value.
     #[error(
         "{channel} at theta_h {}, theta_d {}, phi_d {} (cells from 0) is {x:e}/sr, and must be at \
          most {LARGEST:e}/sr; a negative number marks what was not measured",
@@ -86,7 +85,7 @@ fn by<T: Display>([h, d, p]: &[T; 3]) -> String {
     format!("{h} x {d} x {p}")
 }
 
-/// Where a cell's value stands; `place` as [`MIDDLE`]. The square root of θ_h is evenly spaced.
+/// The angles of a cell's value; `place` as [`MIDDLE`]. The square root of θ_h is evenly spaced.
 pub(super) fn angles([i, j, k]: [usize; 3], place: f64) -> HalfDifference {
     let along = |index: usize, axis: usize| (index as f64 + place) / DIMENSIONS[axis] as f64;
     HalfDifference {
@@ -96,12 +95,12 @@ pub(super) fn angles([i, j, k]: [usize; 3], place: f64) -> HalfDifference {
     }
 }
 
-/// The place of a cell in a channel.
+/// The index of a cell in a channel.
 pub(super) fn index([i, j, k]: [usize; 3]) -> usize {
     (i * DIMENSIONS[1] + j) * DIMENSIONS[2] + k
 }
 
-/// The cell at a place in a channel.
+/// The cell at an index in a channel.
 pub(super) fn cell(index: usize) -> [usize; 3] {
     let [_, d, p] = DIMENSIONS;
     [index / (d * p), index / p % d, index % p]
@@ -144,7 +143,6 @@ impl Measured {
         for (channel, values) in values.chunks_exact(CELLS).enumerate() {
             let scaled = |value: &[u8; 8]| SCALES[channel] * f64::from_le_bytes(*value);
             let values: Vec<f64> = values.iter().map(scaled).collect();
-            // A number that is none is not at most anything.
             let taken = |x: &f64| (f64::MIN..=LARGEST).contains(x);
             if let Some(at) = values.iter().position(|x| !taken(x)) {
                 return Err(MerlError::Value(channel, cell(at), values[at]));
@@ -156,10 +154,11 @@ impl Measured {
 }
 
 /// The bytes of a file of the database that holds a reflectance (red, green, blue, in 1/sr; a
-/// negative number where there is none), taken in each cell at `place` along each axis: [`MIDDLE`].
+/// negative number where there is none), evaluated in each cell at `place` along each axis, see
+/// [`MIDDLE`].
 ///
-/// The reflectance is asked for by the number of the cell in the file and its angles, in parallel
-/// and in no order.
+/// The reflectance is a function of the index of the cell in the file and its angles; it is called
+/// in parallel and in no order.
 pub fn encode(
     place: f64,
     reflectance: impl Fn(usize, HalfDifference) -> [f64; 3] + Sync,

@@ -4,7 +4,8 @@
 
 use glam::DVec3;
 
-/// Where a view `v` and a light `l` stand, up to a rotation about the macro normal `n`; radians.
+/// The directions of a view `v` and a light `l`, up to a rotation about the macro normal `n`;
+/// radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfDifference {
     /// The angle between `n` and the half vector `m`, in [0, π/2].
@@ -17,19 +18,18 @@ pub struct HalfDifference {
 }
 
 impl HalfDifference {
-    /// `v` and `l`, unit vectors in a frame whose pole is `n`, with `m` at
-    /// (sin θ_h, 0, cos θ_h): the tangent points to where `m` leans.
+    /// `v` and `l`, unit vectors in a frame whose pole is `n`, with `m` at (sin θ_h, 0, cos θ_h).
     pub fn directions(self) -> [DVec3; 2] {
         let (sin, cos) = self.theta_d.sin_cos();
         let (sin_h, cos_h) = self.theta_h.sin_cos();
-        // About m as the pole, then turned with it.
+        // With m as the pole, then rotated by θ_h.
         let side = DVec3::new(sin * self.phi_d.cos(), sin * self.phi_d.sin(), 0.0);
         [-side, side].map(|side| {
             DVec3::new(cos_h * side.x + sin_h * cos, side.y, cos_h * cos - sin_h * side.x)
         })
     }
 
-    /// v·n and l·n; negative below the horizon. Those of [`directions`](Self::directions), for less.
+    /// v·n and l·n; negative below the horizon. Cheaper than [`directions`](Self::directions).
     ///
     /// In a frame with `m` as its pole the directions are (∓sin θ_d cos φ_d, ∓sin θ_d sin φ_d,
     /// cos θ_d), the upper sign for `v`; there `n` is (−sin θ_h, 0, cos θ_h).
@@ -79,14 +79,15 @@ mod tests {
 
     #[test]
     fn corners_are_what_they_are_called() {
-        // A mirror's directions, a light at the view, and directions beside the plane of m and n.
+        // The directions of a mirror, a light at the view, and directions perpendicular to the
+        // plane of m and n.
         assert_near(at(0.0, 0.7, 2.0).cosines(), [0.7_f64.cos(); 2]);
         assert_near(at(0.4, 0.0, 2.0).cosines(), [0.4_f64.cos(); 2]);
         assert_near(at(0.4, 0.7, FRAC_PI_2).cosines(), [0.4_f64.cos() * 0.7_f64.cos(); 2]);
         // In the plane angles add; at φ_d + π view and light have changed places.
         assert_near(at(0.4, 0.7, 0.0).cosines(), [0.3_f64.cos(), 1.1_f64.cos()]);
         assert_near(at(0.4, 0.7, PI).cosines(), [1.1_f64.cos(), 0.3_f64.cos()]);
-        // A normal at the horizon: one of both is below it, or both are on it.
+        // A half vector at the horizon: one direction is below it, or both are on it.
         assert_near(at(FRAC_PI_2, 0.7, 0.0).cosines(), [0.7_f64.sin(), -0.7_f64.sin()]);
         assert_near(at(FRAC_PI_2, 0.0, 0.0).cosines(), [0.0, 0.0]);
         assert_near(at(0.0, FRAC_PI_2, 0.0).cosines(), [0.0, 0.0]);

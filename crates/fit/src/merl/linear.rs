@@ -1,4 +1,4 @@
-//! The parameters that a reflectance is linear in: the Lambert term and F0 of each channel, by
+//! The parameters in which a reflectance is linear, the Lambert term and F0 of each channel, by
 //! least absolute deviations.
 
 use glam::DVec2;
@@ -7,7 +7,6 @@ use rayon::prelude::*;
 use super::file::{DARKEST, MerlError};
 use super::samples::Samples;
 
-/// The Lambert term and F0 of a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Linear {
     /// In 1/sr: the albedo over π.
@@ -16,13 +15,12 @@ pub(super) struct Linear {
     pub(super) f0: f64,
 }
 
-/// What was measured at some samples, and is to be fitted.
 pub(super) struct Problem<'a> {
     samples: &'a Samples,
     values: [Vec<f64>; 3],
     /// Σ measured · cos θ_l of each channel.
     measured: [f64; 3],
-    /// A Lambert term that the best one cannot exceed.
+    /// Upper bound of the best Lambert term.
     bound: [f64; 3],
 }
 
@@ -35,15 +33,15 @@ impl<'a> Problem<'a> {
                 weight += cos_l;
                 measured[channel] += cos_l * y;
             }
-            // The best Lambert term is a weighted median of what the highlight leaves, no more than
-            // that of the values; and no median of what is not negative exceeds twice the mean.
-            // A channel without values has none.
+            // The best Lambert term is a weighted median of the values less the highlight, so at
+            // most the median of the values, and the median of non-negative numbers is at most
+            // twice their mean. The bound is 0 for a channel without values.
             bound[channel] = 2.0 * measured[channel] / weight.max(f64::MIN_POSITIVE);
         }
         Self { samples, values, measured, bound }
     }
 
-    /// Whether there is something to fit.
+    /// Refuses measurements that cannot be fitted.
     pub(super) fn check(&self) -> Result<(), MerlError> {
         let missing = |values: &Vec<f64>| values.iter().all(|y| *y < 0.0);
         if let Some(channel) = self.values.iter().position(missing) {
@@ -58,8 +56,7 @@ impl<'a> Problem<'a> {
     }
 
     /// The least Σ |measured − model| cos θ_l / Σ measured cos θ_l over all channels for a specular
-    /// reflectance (as [`Samples::specular`]), and the parameters; the error is within `tolerance`
-    /// of the least.
+    /// reflectance (as [`Samples::specular`]), to within `tolerance`, and the parameters.
     pub(super) fn solve(&self, specular: &[f64], tolerance: f64) -> (f64, [Linear; 3]) {
         let total: f64 = self.measured.iter().sum();
         let mut searches = [(); 3].map(|()| Search::new());
@@ -102,10 +99,10 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Σ |measured − model| cos θ_l, and its slopes along the Lambert term and F0, from columns of what
-/// was measured, the specular reflectance, Schlick's weight and cos θ_l.
+/// Σ |measured − model| cos θ_l, and its slopes along the Lambert term and F0, from columns of the
+/// measured values, the specular reflectance, Schlick's weight and cos θ_l.
 fn sums(Linear { lambert, f0 }: Linear, columns: [&[f64]; 4]) -> (f64, DVec2) {
-    // Side by side, as wide registers add.
+    // Several sums, one in each lane of a SIMD register.
     const LANES: usize = 4;
     let (mut error, mut by_lambert, mut by_f0) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
     let mut one = |lane: usize, [y, specular, grazing, cos_l]: [f64; 4]| {
@@ -135,19 +132,19 @@ fn sums(Linear { lambert, f0 }: Linear, columns: [&[f64]; 4]) -> (f64, DVec2) {
 
 /// The search for the least value of a convex function on the unit square by its centre of gravity
 /// (Levin 1965; Newman 1965, *Location of the Maximum on Unimodal Surfaces*,
-/// doi:10.1145/321281.321291): a slope at the centre of what is left tells which side of the centre
-/// to drop, at least 1/e of the area.
+/// doi:10.1145/321281.321291): the slope at the centre of the remaining polygon decides which side
+/// of the centre to drop, at least 1/e of the area.
 ///
-/// Absolute deviations have corners wherever a sample is met, where a search along the coordinates
-/// one after the other may stop short, and one by steps of Newton's goes astray. Here the
-/// slope also bounds the least value from below, and the search ends with that proof, or when less
-/// than 1e-20 of the square is left.
+/// Absolute deviations have corners wherever the model equals a sample. There a search along one
+/// coordinate after the other may stop too early, and Newton's method may diverge. Here the slope
+/// also bounds the least value from below; the search ends when that bound proves the tolerance, or
+/// when less than 1e-20 of the square is left.
 #[derive(Debug)]
 struct Search {
-    /// What is left, counter-clockwise.
+    /// The remaining polygon, counter-clockwise.
     polygon: Vec<DVec2>,
-    /// Its centre, where the value and the slope are asked for next; `None` once the search has
-    /// ended.
+    /// The polygon's centre, at which the value and the slope are needed next; `None` once the
+    /// search has ended.
     next: Option<DVec2>,
     best: DVec2,
     least: f64,
@@ -156,7 +153,7 @@ struct Search {
 }
 
 impl Search {
-    /// More than ever needed: by then at most 1e-11 of the square is left.
+    /// An upper limit that is never reached: after 60 steps at most 1e-11 of the square is left.
     const STEPS: usize = 60;
 
     fn new() -> Self {
@@ -191,7 +188,7 @@ impl Search {
     }
 }
 
-/// The part of a convex polygon where a linear function is not positive.
+/// The part of a convex polygon where a linear function is at most 0.
 fn clip(polygon: &[DVec2], side: impl Fn(DVec2) -> f64) -> Vec<DVec2> {
     let mut left = Vec::with_capacity(polygon.len() + 1);
     for (i, &a) in polygon.iter().enumerate() {
@@ -207,12 +204,12 @@ fn clip(polygon: &[DVec2], side: impl Fn(DVec2) -> f64) -> Vec<DVec2> {
     left
 }
 
-/// The centre of gravity of a polygon; `None` for one without an area that doubles can tell.
+/// The centre of gravity of a polygon; `None` if its area vanishes in double precision.
 fn centroid(polygon: &[DVec2]) -> Option<DVec2> {
     let &first = polygon.first()?;
     let (mut area, mut moment) = (0.0, DVec2::ZERO);
     for pair in polygon[1..].windows(2) {
-        // From a corner of it, so that a small polygon far from the origin keeps its digits.
+        // Relative to a corner, so that a small polygon far from the origin keeps its digits.
         let [a, b] = [pair[0] - first, pair[1] - first];
         let twice = a.perp_dot(b);
         area += twice;
@@ -225,7 +222,7 @@ fn centroid(polygon: &[DVec2]) -> Option<DVec2> {
 mod tests {
     use super::*;
 
-    /// The least of a function with a slope, and how many steps it took.
+    /// The search for the least value of a function with a slope, and its number of steps.
     fn least(f: impl Fn(DVec2) -> (f64, DVec2), tolerance: f64) -> (Search, usize) {
         let mut search = Search::new();
         let mut steps = 0;

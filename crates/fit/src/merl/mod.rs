@@ -8,20 +8,20 @@
 //! ```
 //!
 //! with one σ and γ for all channels, an albedo ρ ≥ 0 of the Lambert term and a reflectance
-//! F0 ∈ [0, 1] for each of red, green and blue, and the paper's uncorrelated masking. The error
-//! that is made least is
+//! F0 ∈ [0, 1] for each of red, green and blue, and the paper's uncorrelated masking. The minimised
+//! error is
 //!
 //! ```text
 //! Σ |measured − f| cos θ_l / Σ measured cos θ_l
 //! ```
 //!
 //! over the samples of all channels with view and light less than 80° from the normal; samples that
-//! were not measured are left out. For given σ and γ this is convex in ρ and F0, and solved with a
-//! proof of how near the least it is; σ and γ are found by a scan of every sixth of the difference
-//! angles and every twelfth of the azimuths, then by searches from its deepest basins with more
-//! samples, and in the end with all.
+//! were not measured are left out. For given σ and γ the error is convex in ρ and F0, and minimised
+//! with a proven bound; σ and γ are found by a scan of every sixth of the difference angles and
+//! every twelfth of the azimuths, then by searches from the deepest basins of the scan with more
+//! samples, and finally with all.
 //!
-//! Files are read by [`Measured`], which says at which angles their values stand.
+//! Files are read by [`Measured`]; [`MIDDLE`] is the position of values in their cells.
 
 use microfacet_baker::distribution::{DistributionKind, Named};
 
@@ -37,8 +37,8 @@ pub use geometry::HalfDifference;
 pub use recipe::{names, recipe};
 pub use search::Fitter;
 
-/// The angle from the normal, in degrees, from which on a view or a light is left out: measured
-/// values are not to be relied on there.
+/// Views and lights at this angle from the normal, in degrees, or more are left out: measured
+/// values are unreliable there.
 pub const LIMIT_DEGREES: f64 = 80.0;
 
 /// A fit of one distribution.
@@ -51,7 +51,7 @@ pub struct Fitted {
     /// The albedo of the Lambert term; where the surface emits or the measurement errs it may be
     /// more than 1.
     pub lambert: [f64; 3],
-    /// The error that was made least, relative to what was measured.
+    /// The minimised error, relative to the measured values.
     pub error: f64,
     /// Parameters found at the end of the range that was searched, beyond which a better value may
     /// lie; empty if none.
@@ -82,20 +82,19 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Gains below this share are none: the distribution of fewer parameters is then as good.
+    /// Gains below this share count as none: the distribution of fewer parameters is then as good.
     pub const EQUAL: f64 = 1e-3;
-    /// So are differences of the error below this, some of the tolerances of the search.
+    /// Differences of the error below this, several tolerances of the search, count as none.
     pub const EXACT: f64 = 1e-5;
 
-    /// By what factor the error of another fit exceeds that of the Student-t; 1 where they differ
-    /// by less than the search tells apart.
+    /// The factor by which the error of another fit exceeds that of the Student-t; 1 where they
+    /// differ by less than [`EXACT`](Self::EXACT).
     pub fn gain(&self, other: &Fitted) -> f64 {
         let (a, b) = (other.error, self.student_t.error);
         if a <= b + Self::EXACT { 1.0 } else { a / b.max(Self::EXACT) }
     }
 
-    /// The fit of the fewest parameters that is as good as the best, or better than the other of
-    /// as many.
+    /// The better of Beckmann and GGX if it is as good as the Student-t, else the Student-t.
     pub fn best(&self) -> &Fitted {
         let simple = if self.beckmann.error < self.ggx.error { &self.beckmann } else { &self.ggx };
         let as_good = self.gain(simple) <= 1.0 + Self::EQUAL;

@@ -11,8 +11,8 @@ use microfacet_tables::SIGMA_MAX;
 
 use super::Fitted;
 
-/// The names of fitted materials: those of their files without the last extension, without
-/// characters that no comment may hold, and made unique.
+/// The names of fitted materials: those of their files without the last extension and without
+/// characters that a comment cannot hold, made unique.
 pub fn names<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Vec<String> {
     let mut names = Names::default();
     paths.into_iter().map(|path| names.unique(stem(path))).collect()
@@ -31,7 +31,7 @@ pub fn recipe<'a>(fits: impl IntoIterator<Item = (&'a str, &'a Fitted)>) -> Stri
     let mut scene = Scene::default();
     for (name, fitted) in fits {
         let [sigma, gamma] = fitted.sigma_gamma();
-        // Tables of albedos, which a reflectance asks for, are refused for rougher ones.
+        // A reflectance in a recipe requires tables of albedos, which end at `SIGMA_MAX`.
         let tabulated = sigma <= SIGMA_MAX;
         let [r, g, b] = fitted.lambert;
         // Writing to a string cannot fail.
@@ -101,7 +101,7 @@ mod tests {
         }
         assert!(text.contains("#   gold (2) (2): 0.100000, 0.000000, 0.250000\n"), "{text}");
         assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
-        // What no albedo table covers is planned all the same.
+        // A material that no albedo table covers is planned without its reflectance.
         let rough = Fitted {
             lobe: Named { kind: DistributionKind::StudentT, values: vec![9.0, 2.5] },
             ..fitted(2.0)

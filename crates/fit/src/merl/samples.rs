@@ -14,30 +14,27 @@ use super::file::{DIMENSIONS, MIDDLE, Measured, angles, index};
 /// σ ≤ 1 and 1e-5 for σ = 10.
 const STEPS: usize = 4096;
 
-/// The place of an angle, in radians, in the table.
+/// The coordinate of an angle, in radians, in the table of masking.
 fn place(theta: f64) -> f64 {
     STEPS as f64 * (theta / LIMIT_DEGREES.to_radians()).sqrt()
 }
 
-/// The angle of a place in the table.
 fn angle(place: f64) -> f64 {
     LIMIT_DEGREES.to_radians() * (place / STEPS as f64).powi(2)
 }
 
-/// A direction at an angle from the normal.
 fn direction(theta: f64) -> DVec3 {
     let (sin, cos) = theta.sin_cos();
     DVec3::new(sin, 0.0, cos)
 }
 
-/// Samples of all files alike: their places and the geometry of each.
+/// The samples, the same for all files: indices and geometry.
 #[derive(Default)]
 pub(super) struct Samples {
-    /// The place of each in a channel.
+    /// Index of each sample in a channel.
     pub(super) index: Vec<usize>,
-    /// Its row of θ_h.
     row: Vec<usize>,
-    /// Places of view and light in the table of masking.
+    /// Coordinates of view and light in the table of masking.
     places: Vec<[f64; 2]>,
     /// 1/(4 v·n l·n).
     jacobian: Vec<f64>,
@@ -52,8 +49,8 @@ impl Samples {
     /// result is the same for any number of threads.
     pub(super) const CHUNK: usize = 1 << 14;
 
-    /// Takes every cell of θ_h, every so many of θ_d and φ_d, and leaves out those with a view or a
-    /// light that is [`LIMIT_DEGREES`] or more from the normal.
+    /// Every cell of θ_h, and every `strides`th of θ_d and φ_d, without those whose view or light
+    /// is [`LIMIT_DEGREES`] or more from the normal.
     pub(super) fn new(strides: [usize; 2]) -> Self {
         let mut this = Self::default();
         let along = |axis: usize| {
@@ -64,7 +61,7 @@ impl Samples {
             for (j, k) in along(1).flat_map(|j| along(2).map(move |k| (j, k))) {
                 let at = angles([i, j, k], MIDDLE);
                 let [cos_v, cos_l] = at.cosines();
-                // The cosine of the normal itself may be beyond 1 by rounding.
+                // Next to the normal a cosine may exceed 1 by rounding.
                 let places = [cos_v, cos_l].map(|cos| place(cos.min(1.0).acos()));
                 if !places.iter().all(|x| *x < STEPS as f64) {
                     continue;
@@ -84,7 +81,6 @@ impl Samples {
         self.index.len()
     }
 
-    /// What a file has measured there.
     pub(super) fn of(&self, measured: &Measured) -> [Vec<f64>; 3] {
         let of = |channel: &Vec<f64>| self.index.iter().map(|&at| channel[at]).collect();
         measured.channels.each_ref().map(of)
@@ -103,8 +99,8 @@ impl Samples {
     }
 }
 
-/// Λ over the angle of a direction: each sample reads two values, and the model would take most of
-/// the time.
+/// Λ over the angle of a direction. Each sample reads two values; computing Λ by the model would
+/// take most of the time.
 struct MaskingTable(Vec<f64>);
 
 impl MaskingTable {
@@ -112,7 +108,7 @@ impl MaskingTable {
         Self((0..=STEPS).map(|i| lobe.lambda(direction(angle(i as f64)))).collect())
     }
 
-    /// G1 = 1/(1 + Λ) at a [`place`].
+    /// G1 = 1/(1 + Λ) at a coordinate, see [`place`].
     fn g1(&self, x: f64) -> f64 {
         let i = (x as usize).min(STEPS - 1);
         let [a, b] = [self.0[i], self.0[i + 1]];

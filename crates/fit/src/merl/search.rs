@@ -17,16 +17,15 @@ use crate::minimise::{self, Stop};
 /// Steps of the scan along σ, which is evenly spaced in its logarithm over five decades, and along
 /// s = 1/(γ−1).
 const SCAN: [usize; 2] = [40, 12];
-/// Every so many cells of θ_d and φ_d are searched first, then more, and all in the end.
+/// Strides of the cells of θ_d and φ_d in the first, second and last search.
 const STRIDES: [[usize; 2]; 3] = [[6, 12], [2, 4], [1, 1]];
-/// About how many lobes are tried on each of them; only the progress reads it.
+/// About how many lobes are tried in each search, for progress only.
 const TRIES: [usize; 3] = [1000, 110, 60];
-/// How near to the least error a scan, the first search and the later ones are.
+/// Tolerances of the error in a scan, the first search and the later ones.
 const TOLERANCES: [f64; 3] = [1e-3, 1e-5, 1e-6];
 /// Most basins of a scan that are searched.
 const BASINS: usize = 3;
 
-/// What is fitted, in this order.
 const KINDS: [DistributionKind; 3] =
     [DistributionKind::Beckmann, DistributionKind::TrowbridgeReitz, DistributionKind::StudentT];
 
@@ -41,7 +40,7 @@ impl Default for Fitter {
     }
 }
 
-/// A tenth of what is still said to be at an end (`DistributionKind::ends_at`).
+/// The width is a tenth of the distance that counts as at an end (`DistributionKind::ends_at`).
 const fn stop(tolerance: f64) -> Stop {
     Stop { width: 1e-5, spread: tolerance }
 }
@@ -75,7 +74,7 @@ impl Fitter {
             stage: &stage,
         });
         all.problem.check()?;
-        // The places of Beckmann and GGX are starts of the Student-t as well.
+        // The best Beckmann and GGX are starting points for the Student-t.
         let mut starts: Vec<Vec<f64>> = Vec::new();
         let mut found: Vec<(Vec<f64>, Fitted)> = Vec::new();
         for kind in KINDS {
@@ -87,8 +86,8 @@ impl Fitter {
         }
         let [(at_beckmann, beckmann), (at_ggx, ggx), (_, mut student_t)] =
             found.try_into().expect("three kinds");
-        // Both are of the family, so that its best is never worse: where it is, that search ended
-        // in another basin.
+        // Beckmann and GGX are members of the family, so that the best Student-t is not worse:
+        // where the search found a worse one, it ended in another basin.
         for (at, other) in [(at_ggx, &ggx), (at_beckmann, &beckmann)] {
             if other.error < student_t.error {
                 let kind = DistributionKind::StudentT;
@@ -102,19 +101,18 @@ impl Fitter {
     }
 }
 
-/// The place of a lobe on the square that [`DistributionKind::at`] maps to Student-ts, from the
-/// coordinates that are searched: σ, and s for the Student-t alone.
+/// The coordinates of a lobe on the square that [`DistributionKind::at`] maps to Student-ts, from
+/// the searched coordinates: σ, and s for the Student-t only.
 fn on_square(kind: DistributionKind, place: &[f64]) -> Vec<f64> {
     let z = place.get(1).copied().unwrap_or_else(|| s_of_gamma(shape(kind)) / S_MAX);
     vec![place[0], z]
 }
 
-/// γ of a kind with one parameter.
 fn shape(kind: DistributionKind) -> f64 {
     if kind == DistributionKind::Beckmann { f64::INFINITY } else { 2.0 }
 }
 
-/// The distribution at a place, by name and as a lobe.
+/// The distribution at searched coordinates, by name and as a lobe.
 fn at(kind: DistributionKind, place: &[f64]) -> (Named, StudentT) {
     let mut values = DistributionKind::StudentT.at(&on_square(kind, place), 1.0);
     if place.len() == 1 {
@@ -125,7 +123,6 @@ fn at(kind: DistributionKind, place: &[f64]) -> (Named, StudentT) {
     (Named { kind, values }, lobe)
 }
 
-/// The error of every lobe against the samples of one file.
 struct Errors<'a> {
     samples: &'a Samples,
     problem: Problem<'a>,
@@ -147,7 +144,8 @@ impl Errors<'_> {
         self.solve(&at(kind, place).1, tolerance).0
     }
 
-    /// The best place of a scan, of searches in its deepest basins, and of searches from `starts`.
+    /// The best coordinates of a scan, of searches in its deepest basins, and of searches from
+    /// `starts`.
     fn search(&self, kind: DistributionKind, starts: &[Vec<f64>]) -> Result<Vec<f64>, MerlError> {
         let dimension = kind.dimension();
         let grid = minimise::grid(dimension, SCAN);
@@ -229,7 +227,7 @@ mod tests {
         for (end, start) in [(0.0, 0.1), (1.0, 0.9)] {
             for kind in KINDS {
                 let mut at = vec![start; kind.dimension()];
-                // As `search` and `fit` go on from one to the next.
+                // The sequence of searches in `search` and `fit`.
                 for (h, tolerance) in [(0.2, TOLERANCES[1]), (0.01, 1e-6), (0.002, 1e-6)] {
                     let cost = |p: &[f64]| 1.0 + p.iter().map(|x| (x - end).abs()).sum::<f64>();
                     at = minimise::descend(&at, h, stop(tolerance), cost).unwrap();

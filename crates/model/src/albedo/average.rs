@@ -9,7 +9,7 @@ use crate::error::ParameterError;
 /// Steps of the averaging rule: the first, and how often it is halved at most.
 const COARSEST_STEP: f64 = 0.4;
 const HALVINGS: i32 = 4;
-/// Nodes of that rule beyond this t count for less than 1e-13.
+/// Nodes of the averaging rule beyond this t count for less than 1e-13.
 const LAST_NODE: f64 = 2.3;
 /// Nodes whose share of the average is less than this may err more, in inverse proportion.
 const RARE: f64 = 0.02;
@@ -38,7 +38,6 @@ impl AlbedoIntegrator {
             for node in (-nodes..=nodes).filter(|node| halving == 0 || node % 2 != 0) {
                 let (sin, cos, measure) = tanh_sinh(step * f64::from(node));
                 let share = 2.0 * sin * cos * measure;
-                // Nodes of little weight need less accuracy.
                 let tolerance = self.tolerance * (RARE / share).clamp(1.0, 1e4);
                 let albedo = self.reflection_to(tolerance, sigma, cos, &weight)?;
                 add(&mut sum, share, &albedo.both());

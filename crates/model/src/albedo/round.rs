@@ -1,8 +1,8 @@
 //! The reflection albedo of lobes that are equally rough along both axes: fewer rays, each of which
 //! is evaluated once.
 //!
-//! The integrand is even about the azimuth of the view, and so is the one that a substitution
-//! keeps periodic: with c = cos u,
+//! The integrand is even about the azimuth of the view. A substitution that keeps it even and
+//! periodic, with c = cos u,
 //!
 //! ```text
 //! cos φ = sinh(K c)/sinh K
@@ -127,7 +127,7 @@ impl AlbedoIntegrator {
         let (mut outer, mut last) = (f64::INFINITY, f64::INFINITY);
         for _ in 0..HALVINGS {
             steps *= 2;
-            // Those of the longer step stay.
+            // The rays of the longer step are kept.
             let rays = turn.rays(steps, 2);
             add_rays(&mut sum, &rays, along(order, &rays));
             let now = whole(&sum, steps);
@@ -159,7 +159,6 @@ impl AlbedoIntegrator {
     }
 }
 
-/// Adds the parts of rays to a sum.
 fn add_rays<const N: usize>(
     sum: &mut Both<N>,
     rays: &[Ray],

@@ -16,9 +16,10 @@
 //! E = 1/max(area, cos θ) ∫dx p(x) (cos θ + ξ sin θ) ∫dt p⊥(t) F(v·m) S(l)
 //! ```
 //!
-//! over chords of the disc, whether the mean slope (ξ₀, η₀) lies inside it or outside. S is as for
-//! untilted lobes. The integrand varies quickly in the layer along the rim and, for long tails,
-//! near l = n. The clamp of G1(l) at one is a kink along a curve, at which chords are divided.
+//! over chords of the disc, whether the mean slope (ξ₀, η₀) lies inside it or outside. S is G1(l)
+//! or G1(l)/(G1(l) + G1(v)(1 − G1(l))) for the two forms of masking. The integrand varies quickly
+//! in the layer along the rim and, for long tails, near l = n. The clamp of G1(l) at one is a kink
+//! along a curve, at which chords are divided.
 
 use microfacet_core::{Masking, Skew};
 
@@ -41,7 +42,8 @@ const CLAMPS: usize = 16;
 /// Chords between which those that touch the clamp's curve are searched for.
 const TANGENTS: usize = 24;
 
-/// A view of a skewed lobe and what depends on it alone; see the module for the symbols.
+/// A view of a skewed lobe and what depends on it alone; symbols as in the documentation of this
+/// module.
 struct View {
     cos: f64,
     sin: f64,
@@ -55,11 +57,9 @@ struct View {
     g1: f64,
 }
 
-/// The interval of slopes along the view, in w.
 struct Along {
     /// Where the integrand varies quickly, ascending, up to where the tail begins.
     stops: Vec<End>,
-    /// End of the tail.
     end: End,
 }
 
@@ -87,16 +87,16 @@ impl AlbedoIntegrator {
     /// from the x axis of the macrosurface); `weight` gives the reflectances, smooth in
     /// v·m ∈ [0, 1].
     ///
-    /// G1 of view and light are clamped at one, as in [`Ellipsoid`], so that E ≤ 1 for weights
-    /// of one. cos θ = 0 is the limit of grazing views. From below the lobe's own horizon E
-    /// approaches it only where cos θ is less than the projected area, which may be minute; where
-    /// that area underflows, E is taken as 0.
+    /// G1 of view and light are clamped at one, as in [`Ellipsoid`], so that E ≤ 1 for weights of
+    /// one. cos θ = 0 is the limit of grazing views. From below the lobe's own horizon E approaches
+    /// that limit only where cos θ is less than the projected area, which may be minute; where that
+    /// area underflows, E is taken as 0.
     ///
-    /// The clamp is a kink, and a few views miss the tolerance even at the highest order; `error`
-    /// says so. Measured at tolerance 1e-5 over 8,000 views (σ from 0.01 to 3, γ from 1.501 to ∞,
-    /// mean slopes up to four times σ): 5 estimates exceed it, the largest is 3.6e-5. Of 1,142
-    /// views compared with finer quadrature none differs by more than 6.7e-6, and 3 by more than
-    /// their estimate.
+    /// The clamp is a kink, and a few views miss the tolerance even at the highest order; their
+    /// `error` exceeds it. Measured at tolerance 1e-5 over 8,000 views (σ from 0.01 to 3, γ from
+    /// 1.501 to ∞, mean slopes up to four times σ): 5 estimates exceed it, the largest is 3.6e-5.
+    /// Of 1,142 views compared with finer quadrature none differs by more than 6.7e-6, and 3 by
+    /// more than their estimate.
     ///
     /// # Errors
     /// [`ParameterError::OtherGamma`] if the ellipsoid has another shape than the integrator,
@@ -159,7 +159,7 @@ impl AlbedoIntegrator {
         }
         if view.cos == 0.0 && end.at * self.shape.s().sqrt() >= LARGEST_RAPIDITY {
             // At grazing the power law has no end, and height-correlated masking (G2/G1 = 1) keeps
-            // all of it.
+            // all of its tail.
             let mass = view.scale * view.sin * view.beta * self.shape.first_moment(end.at);
             let tail = self.grazing_tail(rule, view, weight);
             for i in 0..N {
@@ -271,7 +271,6 @@ impl AlbedoIntegrator {
         })
     }
 
-    /// √(1 + s x²).
     fn stretch(&self, x: f64) -> f64 {
         (1.0 + self.shape.s() * x * x).sqrt()
     }
@@ -430,8 +429,8 @@ impl View {
     }
 }
 
-/// The ends of an interval of w and the points that divide it into parts, narrow in the bulk of the
-/// lobe and wider in its tails.
+/// The ends of an interval of w and the points that divide it, close together in the bulk of the
+/// lobe and further apart in its tails.
 fn steps(low: f64, high: f64, parts: usize) -> Vec<f64> {
     let [a, b] = [low, high].map(|w| libm::asinh(2.0 * w));
     let inside = (1..parts).map(|i| 0.5 * libm::sinh(a + (b - a) * (i as f64 / parts as f64)));

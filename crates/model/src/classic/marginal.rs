@@ -55,7 +55,6 @@ impl<'a> Marginal<'a> {
         self.reach
     }
 
-    /// The angles at which D has a corner.
     pub(crate) fn corners(&self) -> Vec<f64> {
         self.d.corners()
     }
@@ -147,7 +146,7 @@ impl<'a> Marginal<'a> {
 pub struct Across<'a> {
     marginal: &'a Marginal<'a>,
     x: f64,
-    /// ∫ P22 over half of them.
+    /// ∫ P22 over the slopes across y > 0.
     half: f64,
 }
 

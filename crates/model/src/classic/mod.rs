@@ -122,7 +122,6 @@ fn search_half(unit: impl Fn(f64) -> f64, support: f64) -> Option<f64> {
     }
 }
 
-/// The root of an increasing f in [low, high].
 fn bisect(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     for _ in 0..200 {
         let middle = 0.5 * (low + high);

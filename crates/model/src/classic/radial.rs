@@ -12,8 +12,8 @@ const STEEPEST: f64 = 1e150;
 /// An isotropic distribution outside the Student-t family as a lobe, such as GTR or a measured one.
 ///
 /// Every function integrates D over slopes, and sampling inverts such integrals by bisection, to
-/// 1e-10 of the CDFs. `microfacet-sampler` has a `Radial` of the same functions from tables, which
-/// is what to use where speed matters.
+/// 1e-10 of the CDFs. `microfacet-sampler` has a `Radial` of the same functions from tables, for
+/// speed.
 ///
 /// ```
 /// use microfacet_model::glam::DVec3;

@@ -28,8 +28,7 @@ impl Sawicki {
         Ok(Self { n })
     }
 
-    /// 1 − t for t = cos θ, without the cancellation that would leave nothing of narrow lobes; at
-    /// most 1, that of the horizon.
+    /// 1 − t for t = cos θ, without cancellation at small θ; at most 1, the value at the horizon.
     fn rest(theta: f64) -> f64 {
         let half = libm::sin(0.5 * theta);
         (2.0 * half * half).min(1.0)

@@ -38,7 +38,7 @@ microfacet_core::debug_in_words!(TabulatedError);
 /// normalisation in closed form.
 ///
 /// D is taken as constant up to the first angle and as zero beyond the last.
-/// [`assumed`](Self::assumed) tells how much of [0, π/2] that concerns.
+/// [`assumed`](Self::assumed) gives these two angles.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tabulated {
@@ -123,7 +123,6 @@ impl Tabulated {
         PI * (constant + ramp)
     }
 
-    /// The segment that holds θ.
     fn at(&self, theta: f64) -> usize {
         self.theta.partition_point(|&t| t <= theta).clamp(1, self.theta.len() - 1) - 1
     }
@@ -195,7 +194,7 @@ mod tests {
             assert!((table.cdf(theta) - u).abs() < 1e-14);
         }
         assert!((table.peak() / beckmann.peak() - 1.0).abs() < 1e-4);
-        // The segments' closed form against quadrature that does not know the segments.
+        // The closed form of segments against quadrature that ignores them.
         assert!((projected(|t| table.d(t), 0.01, 0.4) - table.cdf(0.4)).abs() < 1e-5);
     }
 

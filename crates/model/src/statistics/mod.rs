@@ -1,4 +1,4 @@
-//! Statistical tests of samplers against the model, wherever the drawn normals come from.
+//! Statistical tests of any sampler against the model.
 
 mod chi_square;
 mod normals;

@@ -40,7 +40,7 @@ impl NormalsTest {
 /// normals of `truth` for the view `v`, a unit vector in the tangent frame.
 ///
 /// Any sampler can be tested, with tables or without. `truth` may deliberately differ from the lobe
-/// that is drawn from, to see the tests reject.
+/// that is drawn from, to check that the tests reject.
 pub fn test_visible_normals(
     truth: &StudentT,
     v: DVec3,
@@ -164,7 +164,6 @@ struct WorldGrid {
     sigma: [f64; 2],
     rings: Vec<f64>,
     share: Vec<f64>,
-    /// Whether the outermost ring is one cell.
     whole_last_ring: bool,
 }
 

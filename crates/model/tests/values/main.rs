@@ -27,7 +27,6 @@ fn rows(name: &str) -> Vec<Vec<String>> {
     rows
 }
 
-/// The factors of F0 and F90 in Schlick's reflectance.
 fn schlick(cos: f64) -> [f64; 2] {
     [1.0 - schlick_weight(cos), schlick_weight(cos)]
 }
@@ -59,14 +58,13 @@ fn apart<const N: usize>(a: &Albedo<N>, b: &Albedo<N>) -> f64 {
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, worst)
 }
 
-/// Asserts that two numbers differ by less than a tolerance.
 #[track_caller]
 fn assert_near(got: f64, want: f64, tolerance: f64, at: impl Display) {
     let error = (got - want).abs();
     assert!(error < tolerance, "{at}: {got} against {want}, off by {error:e} of {tolerance:e}");
 }
 
-/// Asserts that the parts of E add up to a share, but for `slack`.
+/// Asserts that E = scale + bias lies in [0, 1 + `slack`].
 #[track_caller]
 fn assert_share(albedo: &Albedo<2>, slack: f64, at: impl Display) {
     for form in Masking::ALL {

@@ -78,8 +78,8 @@ fn equal_roughness_takes_no_notice_of_azimuth() {
     assert!(apart(&isotropic, &near) < 1e-8);
 }
 
-/// Isotropic lobes have a quadrature of their own; that of anisotropic ones, for roughnesses that
-/// hardly differ, shares neither its rays nor its error estimate.
+/// The quadrature of isotropic lobes and that of anisotropic ones, here for roughnesses that hardly
+/// differ, share neither rays nor error estimate.
 #[test]
 fn both_quadratures_agree_within_their_estimates() {
     let panes = [1.5, 1.02].map(|eta| Dielectric::new(eta).unwrap());
@@ -154,7 +154,7 @@ fn refuses_what_is_outside_the_domain() {
     }
 }
 
-/// Total reflection sets in with a square root: quadrature that is told of it no longer depends on
+/// Total reflection sets in with a square root: quadrature that divides there does not depend on
 /// its order.
 #[test]
 fn leaving_a_dielectric_converges() {
@@ -172,8 +172,7 @@ fn leaving_a_dielectric_converges() {
                 assert!(a.error < 1e-4, "{name}: {}", a.error);
                 let off = (a.uncorrelated[0] - b.uncorrelated[0]).abs();
                 assert!(off <= a.error + b.error && off < 1e-5, "{name}: {off}");
-                // Quadrature that is not told of the kink agrees less closely than its error
-                // estimate claims.
+                // Quadrature without the kink agrees less closely than its error estimate says.
                 let blind = fine.reflection(sigma, cos, |c| [inside.reflectance(c)]).unwrap();
                 let off = (blind.height_correlated[0] - b.height_correlated[0]).abs();
                 assert!(off < 1e-3, "{name}: {off}");

@@ -11,7 +11,6 @@ use microfacet_model::{
 
 use crate::{apart, assert_near, assert_share, brute_force, direction, schlick};
 
-/// Integrators of one shape for two tolerances.
 fn integrators(gamma: f64, tolerances: [f64; 2]) -> [AlbedoIntegrator; 2] {
     let shape = Shape::new(gamma).unwrap();
     tolerances.map(|tolerance| AlbedoIntegrator::new(shape, tolerance))

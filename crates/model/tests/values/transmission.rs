@@ -79,7 +79,6 @@ fn as_much_passes_either_way() {
         let integrator = AlbedoIntegrator::new(Shape::new(gamma).unwrap(), 1e-6);
         for (sigma, eta) in [(0.2, 1.5), (1.0, 3.0)] {
             let pane = Dielectric::new(eta).unwrap();
-            // Both forms of masking at once.
             let of = |pane: Dielectric| {
                 average(|cos| {
                     let passed = integrator.transmission(sigma, cos, pane).unwrap();

@@ -12,8 +12,8 @@ const RATIO: f64 = 1.5;
 const INNER: [f64; 2] = [0.276_393_202_250_021, 0.723_606_797_749_979];
 /// Halvings of the interval in which a clamp sets in.
 const HALVINGS: usize = 7;
-/// How often a panel is split where a clamp sets in, and then its parts; a lookup that is 0 to
-/// rounding might set in at any point.
+/// How often a panel is split where a clamp sets in, recursively; bounded, because a lookup that is
+/// 0 to rounding may be clamped at any point.
 const SPLITS: u32 = 3;
 /// How near to a node panels end, in cells, and the steps of that search.
 const NEAR: f64 = 1e-5;
@@ -21,7 +21,7 @@ const STEPS: usize = 6;
 /// Views of smaller cosine weigh less than rounding.
 const LOWEST: f64 = 1e-12;
 
-/// Quantities at a view, and a number that says which of them are clamped.
+/// Quantities at a view, and bits that say which of them are clamped.
 pub(super) type At<const N: usize> = ([f64; N], u32);
 
 /// 2 ∫ μ dμ of functions of cos θ that are looked up at `nodes` nodes.
@@ -57,19 +57,17 @@ pub(super) fn over_views<const N: usize>(
     sum
 }
 
-/// Adds multiples of quantities.
 pub(super) fn add<const N: usize>(sum: &mut [f64; N], factor: f64, values: &[f64; N]) {
     for (sum, x) in sum.iter_mut().zip(values) {
         *sum += factor * x;
     }
 }
 
-/// h of cos θ.
 fn half_tangent(cos: f64) -> f64 {
     cos / (1.0 + sqrt64((1.0 - cos) * (1.0 + cos)))
 }
 
-/// Quantities at a place, with their weight in ∫ dh.
+/// Quantities at h, with their weight in ∫ dh.
 struct Point<const N: usize> {
     h: f64,
     values: [f64; N],
@@ -87,7 +85,7 @@ fn add_panel<const N: usize>(
     let width = to.h - from.h;
     let [a, b] = INNER.map(|x| at(from.h + x * width));
     let points = [from, &a, &b, to];
-    // Normal incidence weighs nothing.
+    // The weight of normal incidence is 0.
     let kinked = |pair: &&[&Point<N>]| pair[0].clamped != pair[1].clamped && pair[1].weight > 0.0;
     let Some(&[low, high]) = points.windows(2).find(kinked).filter(|_| splits > 0) else {
         for (point, weight) in points.into_iter().zip([1.0, 5.0, 5.0, 1.0]) {
@@ -136,8 +134,8 @@ fn each_node(view: &Elevation<'_>, floor: f64, nodes: usize, mut then: impl FnMu
     }
 }
 
-/// Finds a node on the fourth root of h, in which nodes are nearly even: the place, and the
-/// coordinate there. It lies between two such pairs, at about `step` from the first.
+/// Finds a node on the fourth root of h, in which nodes are nearly even: the root and the view's
+/// coordinate there. The node lies between two such pairs, at about `step` from the first.
 fn view_at(
     view: &Elevation<'_>,
     target: f64,

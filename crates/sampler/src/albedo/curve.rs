@@ -18,7 +18,8 @@ use crate::error::MaterialError;
 /// The largest number of channels of an albedo table.
 const CHANNELS: usize = 4;
 
-/// Where the axes before that of the view are collapsed, as far as a table has them.
+/// The material at which the axes before that of the view are collapsed; a table may lack some of
+/// them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MaterialPoint {
     pub(super) sigma: f64,
@@ -27,12 +28,10 @@ pub(super) struct MaterialPoint {
     pub(super) eta: f64,
 }
 
-/// Weights along the axes of a material.
 pub(super) struct MaterialWeights {
     pub(super) weights: Vec<Weights>,
-    /// The roughness of the weights, no less than the first node's.
+    /// The roughness at which the weights are taken, no less than the first node's.
     sigma: f64,
-    /// Whether σ is 0.
     pub(super) is_mirror: bool,
 }
 
@@ -51,9 +50,9 @@ impl MaterialWeights {
                         return None;
                     }
                     let first = axis.quantity(axis.nodes[0])?;
-                    // As single precision has them, in which lobes take σ.
+                    // In single precision, in which lobes take σ.
                     let below = (sigma as f32) < first as f32;
-                    // Between a mirror and the first node nothing is known.
+                    // Nothing is tabulated between a mirror and the first node.
                     if below && sigma > 0.0 {
                         return None;
                     }
@@ -73,7 +72,7 @@ impl MaterialWeights {
     }
 }
 
-/// A quantity, or an end of a range that is the same in single precision, in which lobes take it.
+/// `x`, or an end of a range that equals it in single precision, in which lobes take σ.
 fn end(x: f64, ends: [f64; 2]) -> f64 {
     // Every number is within the rounding of an infinite end.
     let same = |end: &f64| *end < f64::INFINITY && (x - end).abs() <= f64::from(f32::EPSILON) * end;
@@ -113,8 +112,8 @@ impl<const N: usize> ViewCurve<N> {
 
     /// The albedos at a view, each in [0, 1].
     ///
-    /// `v` is a unit vector in the tangent frame, n = +z. A view at or below the horizon is taken
-    /// as the grazing one of its azimuth, NaN likewise; only lobes that are not round depend on the
+    /// `v` is a unit vector in the tangent frame, n = +z. A view at or below the horizon, or NaN,
+    /// is replaced by the grazing view of its azimuth; only lobes that are not round depend on the
     /// azimuth. Closer to grazing than the table's first view, μ₀ of
     /// [`ViewBlend`](microfacet_tables::axis::ViewBlend), albedos are held constant.
     pub fn eval(&self, v: Vec3) -> [f32; N] {
@@ -133,7 +132,7 @@ impl<const N: usize> ViewCurve<N> {
         self.average_of(|albedos| albedos.map(f64::from)).map(|x| x as f32)
     }
 
-    /// Such averages of functions of the albedos.
+    /// Cosine-weighted averages of functions of the albedos.
     pub(crate) fn average_of<const M: usize>(&self, of: impl Fn([f32; N]) -> [f64; M]) -> [f64; M] {
         self.0.average(|rows, view, cos| {
             let albedos = self.at(rows, view, cos);
@@ -147,10 +146,10 @@ impl<const N: usize> ViewCurve<N> {
 /// Directional albedo of one bounce off a rough dielectric under its exact reflectance: the shares
 /// of light reflected and transmitted.
 ///
-/// What is missing to one is shadowed, and left to further bounces.
+/// The rest is shadowed, and left to further bounces.
 #[derive(Clone, Debug)]
 pub struct DielectricAlbedo {
-    /// The form of masking that it is for.
+    /// The form of masking.
     pub masking: Masking,
     /// Seen from outside: [reflection, transmission] by the view outside.
     pub outside: ViewCurve<2>,
@@ -162,9 +161,9 @@ pub struct DielectricAlbedo {
 /// Directional albedo of one bounce under an exact reflectance, other than F = 1.
 #[derive(Clone, Debug)]
 pub enum FresnelAlbedo {
-    /// Off a conductor: red, green and blue.
+    /// Of a conductor: red, green and blue.
     Conductor(ViewCurve<3>),
-    /// Off and through a dielectric.
+    /// Of a dielectric, reflected and transmitted.
     Dielectric(DielectricAlbedo),
 }
 
@@ -179,7 +178,6 @@ pub(super) fn missing(table: &Table, point: &MaterialPoint) -> MaterialError {
 pub(super) struct Curve {
     /// The values at the nodes, azimuths slowest; channels that the table lacks are 0.
     nodes: Vec<[f32; CHANNELS]>,
-    /// The number of views at each azimuth.
     views: usize,
     view: View,
     /// The channel by which the others are clamped.
@@ -188,10 +186,9 @@ pub(super) struct Curve {
     moments: bool,
 }
 
-/// The coordinates of the views.
 #[derive(Clone, Copy, Debug)]
 enum View {
-    /// The same at every azimuth.
+    /// A round lobe: the same at every azimuth.
     Round(PreparedView),
     /// By the roughness seen from the azimuth. γ is already in the parameters.
     Turning(PreparedAzimuth, ViewBlend),
@@ -240,7 +237,7 @@ impl Curve {
             View::Turning(azimuth, blend) => {
                 let (x, y) = (f64::from(v.x), f64::from(v.y));
                 let r = libm::hypot(x, y);
-                // Along the normal any azimuth will do; NaN fails the comparison, too.
+                // Along the normal the azimuth is arbitrary; NaN fails the comparison, too.
                 let (c, s) = if r > 0.0 && r < f64::INFINITY { (x / r, y / r) } else { (1.0, 0.0) };
                 let view = blend.prepare_shaped(azimuth.sigma(c, s));
                 then(&azimuth.six(c, s), &Elevation::Blend(&view))
@@ -263,12 +260,12 @@ impl Curve {
             }
         }
         if self.moments {
-            // E in [0, 1], so that what is lost and its average agree.
+            // E in [0, 1], so that 1 − E and its average agree.
             sum[0] = sum[0].clamp(-1.0, 0.0);
         }
         match self.clamp.map(|i| sum[i]) {
             // The channel is c = μ/(μ + A): above ½ the microsurface shows less area A than the
-            // surface on which it stands.
+            // macrosurface.
             Some(clamp) if clamp > 0.5 => {
                 let share = ((1.0 - clamp) / clamp).max(0.0);
                 let one = if self.moments { 1.0 } else { 0.0 };
@@ -280,7 +277,6 @@ impl Curve {
         }
     }
 
-    /// The channels of cos θ at some azimuths.
     pub(super) fn at(&self, rows: &Rows, view: &Elevation<'_>, cos: f32) -> [f32; CHANNELS] {
         self.interpolate(rows, view.six(cos, self.views))
     }

@@ -13,19 +13,19 @@ use crate::error::MaterialError;
 /// The directional albedo of one material as a function of the view, with F = 1 and as moments of
 /// Fresnel weights.
 ///
-/// It is made by [`Tables::albedo`](crate::Tables::albedo) and
+/// Made by [`Tables::albedo`](crate::Tables::albedo) and
 /// [`Tables::material_albedo`](crate::Tables::material_albedo). `v` is a unit vector in the tangent
 /// frame, n = +z; its azimuth matters only to lobes that are not round. A view at or below the
-/// horizon is taken as the grazing one of its azimuth, NaN in `v.z` likewise, and NaN in the other
-/// two as the x axis. Errors are those of the table's certificate: in E and each moment at most
-/// 3e-4 at default quality for cos θ ≥ 0.02 and σ ≥ 0.01. Closer to grazing than the table's first
-/// view, μ₀ of [`ViewBlend`](microfacet_tables::axis::ViewBlend), albedos near their limits with the power of
-/// cos θ that they have there.
+/// horizon, or with NaN in `v.z`, is replaced by the grazing view of its azimuth; NaN in the other
+/// two counts as the azimuth of the x axis. Errors are those of the table's certificate: in E and
+/// each moment at most 3e-4 at default quality for cos θ ≥ 0.02 and σ ≥ 0.01. Closer to grazing
+/// than the table's first view, μ₀ of [`ViewBlend`](microfacet_tables::axis::ViewBlend), albedos
+/// approach their limits with the power of cos θ that they have there.
 #[derive(Clone, Debug)]
 pub struct Albedo {
     masking: Masking,
     curve: Curve,
-    /// The averages, in the form of the tables' channels.
+    /// The averages, as the channels of tables.
     average: [f32; 3],
 }
 
@@ -49,7 +49,7 @@ impl Albedo {
         Some(albedo)
     }
 
-    /// The form of masking that the albedo is for.
+    /// The form of masking.
     pub fn masking(&self) -> Masking {
         self.masking
     }
@@ -66,7 +66,7 @@ impl Albedo {
 
     /// The share of light lost, 1 − E(v), with all its digits where E is close to 1.
     pub fn lost(&self, v: Vec3) -> f32 {
-        // No −0.
+        // 0 − x, not −x, which would give −0.
         0.0 - self.rest(v)[0]
     }
 
@@ -85,8 +85,8 @@ impl Albedo {
         0.0 - self.average[0]
     }
 
-    /// The averages by quadrature of what is looked up, in the form of the tables' channels: the
-    /// values that a bake writes into tables of averages.
+    /// The averages by quadrature of the lookups, as the channels of tables: the values that a bake
+    /// writes into tables of averages.
     pub fn integrate(&self) -> [f32; 3] {
         less_mirror(self.curve.average(|rows, view, cos| {
             let rest = self.at(rows, view, cos);
@@ -108,7 +108,7 @@ impl Albedo {
             [e, bias, f82]
         };
         let (floor, here) = (view.floor() as f32, channels(cos));
-        // A mirror has no limit to near.
+        // A mirror has E = 1 down to grazing.
         if cos >= floor || here[0] == 0.0 {
             return here;
         }

@@ -1,9 +1,8 @@
-//! Where a view stands among the nodes of a table, at one azimuth.
+//! The position of a view among the nodes of a table, at one azimuth.
 
 use microfacet_tables::axis::lagrange::{SIX, six};
 use microfacet_tables::axis::{PreparedCritical, PreparedView};
 
-/// The coordinate of views at one azimuth.
 pub(super) enum Elevation<'a> {
     Blend(&'a PreparedView),
     Critical(&'a PreparedCritical),
@@ -34,7 +33,8 @@ impl Elevation<'_> {
         }
     }
 
-    /// The ends of the parts of equal width in t, at which it turns sharply, if there are any.
+    /// The t at which the coordinate turns sharply, between sections of equal width, if there are
+    /// any.
     pub(super) fn ends(&self) -> &[f64] {
         match self {
             Self::Blend(_) => &[],

@@ -17,11 +17,11 @@ impl Tables {
     /// The directional albedo of the round Student-t lobe with σ and γ, for one form of masking.
     ///
     /// σ is 0, a mirror with E = 1, or lies in [1e-8, 3] (the default set, and every set whose
-    /// recipe does not narrow it). Between the two nothing is known: at γ = 1.501 and σ = 1e-9 a
-    /// view of cos θ = 1e-7 loses two thirds of its light. The averages are those of
-    /// the lookups of just this material, so that a white furnace closes: 1 − E_avg differs by no
-    /// more than 5e-5 of itself from the integral of 1 − E in default quality, and by 5e-4 in
-    /// draft. The call takes some twenty microseconds; keep the result.
+    /// recipe does not narrow it). Between the two nothing is tabulated: at γ = 1.501 and σ = 1e-9
+    /// a view of cos θ = 1e-7 loses two thirds of its light. The averages are those of the lookups
+    /// of this material, so that a white furnace closes: 1 − E_avg differs by no more than 5e-5 of
+    /// itself from the integral of 1 − E in default quality, and by 5e-4 in draft. The call takes
+    /// some twenty microseconds; keep the result.
     ///
     /// # Errors
     /// [`MaterialError`] for a γ outside the family, or a σ, γ or form of masking that the set's
@@ -36,7 +36,7 @@ impl Tables {
     }
 
     /// Cosine-weighted averages 2∫₀¹ · μ dμ of the moments, from the table of averages alone; where
-    /// a set has none, as for single materials, those of [`albedo`](Self::albedo).
+    /// a set has no such table, as for single materials, those of [`albedo`](Self::albedo).
     ///
     /// Off the table's nodes they differ from those of [`albedo`](Self::albedo) by the errors of its
     /// certificate.
@@ -64,8 +64,8 @@ impl Tables {
     ///
     /// An anisotropic Student-t whose σx, σy and γ are single numbers, an ellipsoid and a
     /// distribution outside the family have tables of their own; averaging one takes about a
-    /// millisecond, so keep the result. A range is taken at its middle, and for an anisotropic
-    /// material with a range the round lobe of √(σx σy) stands in.
+    /// millisecond, so keep the result. A range is taken at its middle; an anisotropic material
+    /// with a range has the albedo of the round lobe of √(σx σy).
     ///
     /// # Errors
     /// [`MaterialError::NoSuchMaterial`], [`MaterialError::NoAlbedo`] for a material that was baked
@@ -82,8 +82,8 @@ impl Tables {
     ///
     /// Ranges are taken as by [`material_albedo`](Self::material_albedo), that of an index of
     /// refraction at the middle of its coordinate
-    /// [`ReflectanceRoot`](microfacet_tables::axis::ReflectanceRoot). A dielectric has the round lobe of
-    /// √(σx σy). For σ = 0 its albedo is that of 1e-8.
+    /// [`ReflectanceRoot`](microfacet_tables::axis::ReflectanceRoot). A dielectric has the albedo
+    /// of the round lobe of √(σx σy). For σ = 0 its albedo is that of 1e-8.
     ///
     /// # Errors
     /// [`MaterialError::NoSuchMaterial`], [`MaterialError::NoAlbedo`] for a material that states no
@@ -138,8 +138,8 @@ impl Tables {
         Ok(DielectricAlbedo { masking, outside: side(eta)?, inside: side(1.0 / eta)? })
     }
 
-    /// The same from one side: [reflection, transmission], where η ∈ [0, ∞] is the index of
-    /// refraction beyond the interface over that on the viewer's side.
+    /// The albedo of a rough dielectric seen from one side: [reflection, transmission], where
+    /// η ∈ [0, ∞] is the index of refraction beyond the interface over that on the viewer's side.
     ///
     /// # Errors
     /// [`MaterialError::DielectricNotCovered`] if no table of that side covers it.
@@ -163,7 +163,6 @@ impl Tables {
         })
     }
 
-    /// The albedo of a material's own lobe under a reflectance.
     fn own<T>(
         &self,
         entry: &MaterialEntry,
@@ -200,7 +199,7 @@ impl Tables {
         self.of_family(kind, masking).filter(of_moments)
     }
 
-    /// What `read` makes of the first table of moments of a kind and masking that covers (σ, γ).
+    /// `read` of the first table of moments of a kind and masking that covers (σ, γ).
     fn moments_of<T>(
         &self,
         kind: Kind,
@@ -220,7 +219,7 @@ impl Tables {
     }
 }
 
-/// Why no table of moments covers (σ, γ), and what they cover.
+/// The error where no table of moments covers (σ, γ); it says what the tables cover.
 fn not_covered<'a, I: Iterator<Item = &'a Table>>(
     tables: impl Fn(Masking) -> I,
     masking: Masking,
@@ -250,12 +249,10 @@ fn smallest_sigma(table: &Table) -> Option<f64> {
     axis.quantity(axis.nodes[0])
 }
 
-/// The materials of tables of moments.
 fn domains<'a>(tables: impl Iterator<Item = &'a Table>) -> String {
     listed(tables.map(material))
 }
 
-/// The dielectrics of all tables, for each form of masking.
 fn dielectrics<'a>(tables: impl Iterator<Item = &'a Table>) -> String {
     let one = |table: &Table| {
         let indices = Range(table.subject.reflectance?.indices()?.into());
@@ -276,7 +273,7 @@ fn material(table: &Table) -> String {
     format!("gamma {gamma} with sigma {sigma}")
 }
 
-/// Without those said before, and not too many.
+/// Joins texts without duplicates, and at most eight of them.
 fn listed(all: impl Iterator<Item = String>) -> String {
     const SHOWN: usize = 8;
     let mut kept: Vec<String> = Vec::new();

@@ -1,11 +1,11 @@
 //! Directional albedos from tables: the share of light that one bounce off the microsurface
 //! returns.
 //!
-//! One mechanism serves every lobe and reflectance: `find` chooses the table by its description,
+//! Every lobe and reflectance goes the same way: `find` chooses the table by its description,
 //! `curve` collapses the axes of the material, which leaves a curve over the view, and
-//! `directional` says what the channels of moments mean.
+//! `directional` makes moments of its channels.
 //!
-//! The averages of reflectances over the hemisphere belong to a compensation of your own.
+//! The averages of reflectances over the hemisphere are for a compensation of your own.
 
 mod average;
 mod curve;

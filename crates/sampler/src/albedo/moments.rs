@@ -6,8 +6,6 @@ use microfacet_core::schlick::{F82_AVERAGE, SCHLICK_AVERAGE, f82_dip, f82_weight
 
 /// Moments of a Fresnel reflectance F(v·m) over the visible normals whose reflections leave the
 /// surface, weighted by shadowing.
-///
-/// From one table they give the albedo of every Schlick reflectance and of OpenPBR's metals.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Moments {
     /// The moment of 1 − (1−v·m)⁵.
@@ -42,7 +40,6 @@ impl Moments {
         Self { scale: 1.0 - bias, bias, f82: f82_weight(cos_theta) }
     }
 
-    /// 2 ∫ μ dμ of a mirror's moments.
     pub(super) fn mirror_average() -> Self {
         Self {
             scale: (1.0 - SCHLICK_AVERAGE) as f32,
@@ -70,10 +67,10 @@ fn whole(cos: f32, [e, bias, f82]: [f32; 3]) -> [f32; 3] {
 /// The channels at cos θ < `floor`, the first view of a table, from those at `floor` and four times
 /// it.
 ///
-/// Towards grazing every moment M nears its limit with one power p of the cosine, M(μ) = M(μ₀) +
-/// (M(μ₀) − M(4μ₀)) (1 − (μ/μ₀)^p)/(4^p − 1). For uncorrelated masking p is 1. Height-correlated
-/// masking lets through ever more of what is seen, and for an untilted lobe all of it in the limit:
-/// p is that of 1 − E, or 0, which holds everything constant, if 1 − E does not fall.
+/// Towards grazing every moment M approaches its limit with one power p of the cosine,
+/// M(μ) = M(μ₀) + (M(μ₀) − M(4μ₀)) (1 − (μ/μ₀)^p)/(4^p − 1). For uncorrelated masking p is 1. With
+/// height-correlated masking 1 − E falls, for an untilted lobe to 0: p is the power of 1 − E, or 0,
+/// which holds everything constant, if 1 − E does not fall.
 pub(super) fn below(
     masking: Masking,
     floor: f32,
@@ -83,7 +80,7 @@ pub(super) fn below(
 ) -> [f32; 3] {
     let power = match masking {
         Masking::Uncorrelated => 1.0,
-        // NaN fails the comparison, too, and everything is held.
+        // NaN fails the comparison, too, and everything is held constant.
         Masking::HeightCorrelated if above[0] / first[0] > 1.0 => {
             (0.5 * libm::log2f(above[0] / first[0])).min(1.0)
         }
@@ -114,7 +111,7 @@ mod tests {
 
     #[test]
     fn an_albedo_of_nothing_is_no_panic() {
-        // What 16-bit rounding makes of E = 0.
+        // 16-bit rounding may turn E = 0 into these channels.
         let moments = Moments::mirror(0.4).plus([-1.000_003, 1e-6, -1e-6]);
         assert_eq!([moments.scale, moments.bias, moments.f82], [0.0; 3]);
     }

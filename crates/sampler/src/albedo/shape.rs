@@ -21,7 +21,7 @@ pub struct ShapeAlbedo<'a> {
     pub view: ViewBlend,
     /// Nodes along the view.
     pub views: usize,
-    /// E − 1, and what bias and F82 have over E times those of a mirror: by σ, by view.
+    /// E − 1, and the excess of bias and F82 over E times those of a mirror: by σ, by view.
     pub values: Vec<[f32; 3]>,
 }
 
@@ -43,7 +43,7 @@ impl<'a> ShapeAlbedo<'a> {
         else {
             return None;
         };
-        // Its nodes are even, which is checked when a table is loaded.
+        // Nodes of `Lagrange6` are even, which is checked when a table is loaded.
         if sigma.interpolation != Interpolation::Lagrange6 {
             return None;
         }

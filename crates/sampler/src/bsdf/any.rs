@@ -1,4 +1,4 @@
-//! Any of the BSDFs, and those of a recipe's materials by name.
+//! Any of the BSDFs, and the BSDF of a recipe's material by name.
 
 use glam::Vec3;
 
@@ -36,7 +36,6 @@ macro_rules! from {
 
 from!(Conductor, Dielectric, Plastic);
 
-/// Calls one function of whichever BSDF it is.
 macro_rules! each {
     ($any:ident, $one:ident => $call:expr) => {
         match $any {

@@ -15,20 +15,20 @@ use crate::tables::Tables;
 /// anisotropic or tilted lobe itself.
 ///
 /// Its albedo is off by 0.07 to 0.6 for anisotropic lobes and by 0.2 to 0.9 for tilted ones
-/// (`docs/albedo.md`), so that compensation then returns too much light or too little. Exact ones
-/// are baked for a recipe that names the lobe, or when loading. Of dielectrics there are round
-/// lobes alone.
+/// (`docs/albedo.md`), so that compensation then returns too much light or too little. Exact
+/// albedos are baked for a recipe that names the lobe, or when loading; of dielectrics for round
+/// lobes only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum StandIn {
-    /// It is an error.
+    /// A missing albedo is an error.
     #[default]
     Refused,
-    /// It stands in.
+    /// The albedo of the round lobe is used.
     Round,
 }
 
 impl Tables {
-    /// The albedo of a lobe with F = 1: of the lobe itself, or of the round lobe that stands in.
+    /// The albedo of a lobe with F = 1: of the lobe itself, or of the round lobe in its stead.
     ///
     /// # Errors
     /// [`BindError::NoAlbedo`] naming the lobe, or
@@ -58,11 +58,11 @@ impl Tables {
         Ok(self.albedo(round.0, round.1, masking)?)
     }
 
-    /// The albedo of a dielectric of a lobe, by event and side: of a round lobe, or of the one that
-    /// stands in.
+    /// The albedo of a dielectric, by event and side: of its round lobe, or of a round lobe in the
+    /// stead of another.
     ///
     /// # Errors
-    /// [`BindError::RoundOnly`] for a lobe that is not round and may not be stood in for,
+    /// [`BindError::RoundOnly`] for a lobe that is not round if `stand_in` refuses a round one,
     /// [`BindError::NoAlbedo`] naming the lobe.
     pub fn dielectric_albedo_of(
         &self,

@@ -1,5 +1,5 @@
-//! The density from which light of further bounces is drawn: the cosine, weighted by what is lost
-//! at each elevation.
+//! The density from which light of further bounces is drawn: the cosine, weighted by the loss at
+//! each elevation.
 
 use core::f32::consts::FRAC_1_PI;
 
@@ -13,8 +13,8 @@ use crate::elementary::turn;
 /// within its roughness of the horizon.
 const BANDS: usize = 32;
 
-/// The share that is drawn by the plain cosine, so that nothing is left out and no weight exceeds
-/// twenty times that of the cosine.
+/// The share that is drawn by the plain cosine, so that the density is positive everywhere and no
+/// weight exceeds twenty times that of the cosine.
 const PLAIN: f64 = 0.05;
 
 /// A density over the hemisphere above, per steradian: a factor, linear in cos² θ between the ends
@@ -29,18 +29,17 @@ pub(super) struct Broad {
     shares: [f32; BANDS + 1],
 }
 
-/// The square of the cosine at an end of a band; the cosine-weighted measure is even in it.
+/// The square of the cosine at an end of a band; the cosine-weighted measure is uniform in it.
 const fn square(end: usize) -> f64 {
     let t = end as f64 / BANDS as f64;
     let cos = (t * t) * (t * t);
     cos * cos
 }
 
-/// The same in single precision, which are the shares of the cosine.
+/// The squares in single precision, which are also the shares of the cosine.
 const SQUARES: [f32; BANDS + 1] = Broad::COSINE.shares;
 
 impl Broad {
-    /// cos θ/π alone.
     pub(super) const COSINE: Self = {
         let mut shares = [0.0; BANDS + 1];
         let mut end = 0;
@@ -101,7 +100,7 @@ impl Broad {
         let [below, above] = [self.shares[band], self.shares[band + 1]];
         let within = unit((u - below) / (above - below));
         // The inverse of the quadratic CDF of a linear density; without cancellation where it is
-        // even.
+        // constant.
         let [a, b] = [self.factors[band], self.factors[band + 1]];
         let root = sqrt(a * a + within * (b - a) * (b + a));
         let w = (within * (a + b) / (a + root)).min(1.0);
@@ -111,7 +110,7 @@ impl Broad {
         Vec3::new(r * cos, r * sin, sqrt(square))
     }
 
-    /// The same; `None` in the horizon.
+    /// [`sample`](Self::sample), or `None` for a direction on the horizon.
     #[inline]
     pub(super) fn sample_above(&self, u: [f32; 2]) -> Option<Vec3> {
         Some(self.sample(u)).filter(|l| l.z > 0.0)
@@ -128,7 +127,6 @@ impl Broad {
     }
 }
 
-/// The density of the cosine at a direction or its opposite.
 #[inline(always)]
 pub(super) fn cosine_pdf(l: Vec3) -> f32 {
     l.z.abs() * FRAC_1_PI
@@ -138,7 +136,7 @@ pub(super) fn cosine_pdf(l: Vec3) -> f32 {
 mod tests {
     use super::*;
 
-    /// What a surface loses within 0.01 of the horizon.
+    /// The loss of a surface whose loss falls off within 0.01 of the horizon.
     fn steep(l: Vec3) -> f32 {
         0.01 / (0.01 + l.z) * (1.0 + 0.5 * l.x)
     }

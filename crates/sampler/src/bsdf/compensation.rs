@@ -1,9 +1,9 @@
-//! Energy compensation: what a single bounce off the microsurface loses to multiple scattering,
-//! given back as a factor or as a lobe of its own.
+//! Energy compensation: the light that a single bounce off the microsurface loses to multiple
+//! scattering is returned by a factor or by a lobe of its own.
 //!
 //! Both forms need the directional albedo E of the same lobe and form of masking that the
-//! single-scattering lobe is evaluated with. With F = 1 both return just what is lost, so that a
-//! white furnace shows nothing.
+//! single-scattering lobe is evaluated with. With F = 1 both return all that is lost, so that a
+//! white furnace closes.
 
 use alloc::boxed::Box;
 use core::f32::consts::FRAC_1_PI;
@@ -15,35 +15,34 @@ use super::mixture::Part;
 use super::reflectance::ConductorFresnel;
 use crate::albedo::Albedo;
 
-/// How a BSDF gives back the light that one bounce loses to further ones.
+/// How a BSDF returns the light that one bounce loses to further ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Compensation {
-    /// Not at all: single scattering.
+    /// Single scattering only.
     #[default]
     None,
     /// A factor on the lobe (Turquin 2019). Cheap and of the lobe's shape, but not reciprocal.
     Turquin,
-    /// A broad lobe beside it (Kulla & Conty 2017). Reciprocal, and exact for white surfaces.
+    /// An additional broad lobe (Kulla & Conty 2017). Reciprocal, and exact for white surfaces.
     KullaConty,
 }
 
-/// What Turquin's factor adds to 1, at most: where E is 0 (γ near 3/2 at large σ).
+/// The most that Turquin's factor adds to 1: a bound where E is 0 (γ near 3/2 at large σ).
 const MOST: f32 = 1e6;
 
-/// Turquin's factor 1 + F0 (1 − E)/E, from what is lost, 1 − E.
+/// Turquin's factor 1 + F0 (1 − E)/E, from the loss 1 − E.
 #[inline(always)]
 pub(super) fn turquin(lost: f32, f0: f32) -> f32 {
     1.0 + (f0 * lost / (1.0 - lost).max(1.0 / MOST)).min(MOST)
 }
 
-/// π times the lobe of Kulla & Conty, from what is lost at view, light and on average.
+/// π times the lobe of Kulla & Conty, from the losses at view and light and their average.
 #[inline(always)]
 pub(super) fn kulla_conty(lost_v: f32, lost_l: f32, average: f32) -> f32 {
     // σ = 0 loses nothing, and the quotient would be 0/0.
     if average > f32::MIN_POSITIVE { lost_v * lost_l / average } else { 0.0 }
 }
 
-/// What a conductor gets back.
 #[derive(Clone, Debug)]
 pub(super) struct Returned<const N: usize> {
     albedo: Albedo,
@@ -52,10 +51,10 @@ pub(super) struct Returned<const N: usize> {
 
 #[derive(Clone, Debug)]
 enum Form<const N: usize> {
-    /// With the reflectance at normal incidence.
+    /// By the reflectance at normal incidence.
     Turquin { f0: [f32; N] },
-    /// With the factors of [`Albedo::multiple_bounces`], their mean over the channels, and that of
-    /// the average reflectance.
+    /// By the factors of [`Albedo::multiple_bounces`], their mean over the channels (`multiple`),
+    /// and that of the average reflectance (`single`).
     KullaConty { bounces: [f32; N], multiple: f32, single: f32, broad: Box<Broad> },
 }
 
@@ -84,13 +83,12 @@ impl<const N: usize> Returned<N> {
         Some(Self { albedo, form })
     }
 
-    /// What one bounce loses of the light of a view, which the functions below take.
+    /// The share of a view's light that one bounce loses, 1 − E(v).
     #[inline]
     pub(super) fn lost(&self, v: Vec3) -> f32 {
         self.albedo.lost(v)
     }
 
-    /// The factor on the lobe.
     #[inline]
     pub(super) fn factor(&self, lost: f32) -> [f32; N] {
         match &self.form {
@@ -116,7 +114,7 @@ impl<const N: usize> Returned<N> {
         Part::broad(l, broad, 1.0, bounces.map(|factor| factor * lobe))
     }
 
-    /// The density of its lights, or where there is none that of the cosine.
+    /// The density of the broad lobe, or that of the cosine where there is none.
     #[inline]
     pub(super) fn broad(&self) -> &Broad {
         match &self.form {
@@ -163,8 +161,8 @@ impl Albedo {
     }
 
     /// Draws a light for [`compensation`](Self::compensation) from two numbers in [0, 1] (clamped
-    /// to them, NaN to 0): cosine-weighted, which is close for rough surfaces; smooth ones lose
-    /// their light at grazing, where weights then become large.
+    /// to them, NaN to 0): cosine-weighted, which is close to the lobe of rough surfaces. Smooth
+    /// surfaces lose their light at grazing, where weights become large.
     #[inline]
     pub fn sample_compensation(&self, u: [f32; 2]) -> Vec3 {
         Broad::COSINE.sample(u)

@@ -14,12 +14,12 @@ use crate::albedo::Albedo;
 use crate::material::MicrofacetDistribution;
 use crate::tables::Tables;
 
-/// A rough conductor: every facet reflects, and what it does not reflect is absorbed.
+/// A rough conductor: every facet reflects F of the light and absorbs the rest.
 ///
 /// Conventions are those of [`Bsdf`]. Single scattering is D F G2/(4 cos θ_v cos θ_l) (Cook &
 /// Torrance 1982, <https://doi.org/10.1145/357290.357293>), sampled by visible normals: its weight
-/// F·G2/G1 is at most 1. [`compensated`](Self::compensated) adds what further bounces return. Black
-/// from below. With a [`Bounded`](crate::lobe::Bounded) lobe fewer samples are lost.
+/// F·G2/G1 is at most 1. [`compensated`](Self::compensated) adds the light of further bounces.
+/// Black from below. With a [`Bounded`](crate::lobe::Bounded) lobe fewer samples are lost.
 #[derive(Clone, Debug)]
 pub struct Conductor<L, const N: usize = 3> {
     lobe: L,
@@ -37,18 +37,19 @@ impl<L: MicrofacetDistribution, const N: usize> Conductor<L, N> {
         Self { lobe, fresnel, masking, smooth, returned: None }
     }
 
-    /// The same with another form of masking and shadowing, and without compensation, which depends
-    /// on it.
+    /// This conductor with another form of masking and shadowing, and without compensation, which
+    /// depends on the form.
     #[must_use]
     pub fn with_masking(self, masking: Masking) -> Self {
         Self { masking, returned: None, ..self }
     }
 
-    /// The same with a compensation of what one bounce loses, by an albedo from tables.
+    /// This conductor with a compensation of the light that one bounce loses, by an albedo from
+    /// tables.
     ///
     /// # Errors
-    /// [`BindError`] if the tables hold no albedo of the lobe for its form of masking; it names the
-    /// lines of a recipe that add one.
+    /// [`BindError`] if the tables hold no albedo of the lobe for its form of masking; the error
+    /// has the lines of a recipe that add one.
     pub fn compensated(
         self,
         tables: &Tables,
@@ -62,8 +63,8 @@ impl<L: MicrofacetDistribution, const N: usize> Conductor<L, N> {
         Ok(self.compensated_by(albedo, compensation))
     }
 
-    /// The same by an albedo that is at hand, which must be of the same lobe; its form of masking
-    /// becomes that of the conductor.
+    /// [`compensated`](Self::compensated) by a given albedo, which must be of the same lobe; its
+    /// form of masking becomes that of the conductor.
     #[must_use]
     pub fn compensated_by(self, albedo: Albedo, compensation: Compensation) -> Self {
         let masking = albedo.masking();
@@ -94,7 +95,7 @@ impl<L: MicrofacetDistribution, const N: usize> Conductor<L, N> {
         Facets { lobe: &self.lobe, masking: self.masking }
     }
 
-    /// One bounce and what is given back of the light that it loses, at a light from above.
+    /// One bounce and the compensation of the light that it loses, at a light from above.
     #[inline(always)]
     fn mixture(&self, returned: &Returned<N>, lost: f32, l: Vec3, white: White) -> Mixture<N> {
         let single = white.part(self.fresnel.at(white.cos));

@@ -22,22 +22,22 @@ use crate::tables::Tables;
 /// refracts the rest, by Fresnel's equations and Snell's law.
 ///
 /// Conventions are those of [`Bsdf`]; all N channels are the same. Seen from either side, the
-/// microsurface is the same: a direction below is taken through the point reflection v ↦ −v, which
-/// leaves the facets in place. Walter et al. 2007, eq. 20–21,
+/// microsurface is the same: a direction below is replaced by its opposite, v ↦ −v, which leaves
+/// the facets as they are. Walter et al. 2007, eq. 20–21,
 /// <https://doi.org/10.2312/EGWR/EGSR07/195-206>. Facets are drawn by visible normals and events by
 /// F, so a sample's weight is G2/G1 ≤ 1, for refracted radiance times (n_v/n_l)². Height-correlated
-/// masking of transmission is 1/(1 + Λ(v) + Λ(l)), as of reflection. An η within 1e-5 of 1 is 1,
-/// and then nothing happens: all light goes straight on, as a delta. Nearer to 1 than 1e-3, the
-/// facet between two directions is known to 1e-8/|η − 1| only, so that `eval` and `pdf` of a narrow
-/// lobe err by some per cent; samples do not.
+/// masking of transmission is 1/(1 + Λ(v) + Λ(l)), as of reflection. An η within 1e-5 of 1 counts
+/// as 1: all light goes straight on, as a delta. For |η − 1| < 1e-3 the facet between two
+/// directions is known to 1e-8/|η − 1| only, so that `eval` and `pdf` of a narrow lobe err by some
+/// per cent; samples do not.
 ///
-/// For γ < 2 many of the facets that a view sees are steeper than single precision tells from a
-/// view and a light: all that they transmit goes within rounding of the cone l·n = −(v·n)/η, where
-/// the density has a pole. These facets, of m·n below 3e-6 (1 + η)/|1 − η|, are *only sampled*:
-/// their light is flagged as a delta and has its whole weight, and f and density are those of the
-/// other facets alone. So a renderer that weights by densities stays unbiased, as beside a mirror.
-/// Of light transmitted at 50° into glass (η = 1.5, σ = 0.3) that is 12 % at γ = 1.55, 0.65 % at
-/// 1.65, 0.02 % at 1.8, and 94 % at 1.501, as the example `steep_facets` prints.
+/// For γ < 2 many of the facets that a view sees are too steep to be found from a view and a light
+/// in single precision: they transmit light within rounding of the cone l·n = −(v·n)/η, where the
+/// density has a pole. These facets, of m·n below 3e-6 (1 + η)/|1 − η|, are *only sampled*: their
+/// light is flagged as a delta and has its whole weight, and f and density are those of the other
+/// facets alone. So a renderer that weights by densities stays unbiased, as for a mirror. Of light
+/// transmitted at 50° into glass (η = 1.5, σ = 0.3) that is 94 % at γ = 1.501, 12 % at 1.55, 0.65 %
+/// at 1.65 and 0.02 % at 1.8, as the example `steep_facets` prints.
 #[derive(Clone, Debug)]
 pub struct Dielectric<L, const N: usize = 3> {
     lobe: L,
@@ -48,18 +48,18 @@ pub struct Dielectric<L, const N: usize = 3> {
     smooth: bool,
     /// Whether D has a pole at the horizon, and facets next to it are only sampled.
     has_pole: bool,
-    /// Where light is given back.
+    /// `None` without compensation.
     returned: Option<Box<Returned>>,
 }
 
-/// The accounts of a compensation, and the densities of its lights on either side.
+/// The energy of a compensation, and the densities of its lights on either side.
 #[derive(Clone, Debug)]
 struct Returned {
     energy: Energy,
     broad: [Broad; 2],
 }
 
-/// A view taken above the surface, and the interface as it is seen from there.
+/// The view or its opposite, whichever is above the surface, and the interface as seen from there.
 #[derive(Clone, Copy)]
 struct Seen {
     v: Vec3,
@@ -69,10 +69,10 @@ struct Seen {
     sign: f32,
 }
 
-/// The accounts of the light of a view, if any are kept.
+/// The compensation and the shares of a view's light; `None` without compensation.
 type Account<'a> = Option<(&'a Returned, Shares)>;
 
-/// A facet that sends light: its normal and, where it refracts, what the density needs.
+/// A facet's normal and, where the facet refracts, the quantities of the density.
 type Sender = (Vec3, Option<Refraction>);
 
 impl<L: MicrofacetDistribution> Dielectric<L> {
@@ -91,25 +91,26 @@ impl<L: MicrofacetDistribution> Dielectric<L> {
 }
 
 impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
-    /// The same in another number of channels.
+    /// This dielectric in another number of channels.
     #[must_use]
     pub fn with_channels<const M: usize>(self) -> Dielectric<L, M> {
         let Self { lobe, index, eta, masking, smooth, has_pole, returned } = self;
         Dielectric { lobe, index, eta, masking, smooth, has_pole, returned }
     }
 
-    /// The same with another form of masking and shadowing, and without compensation, which depends
-    /// on it.
+    /// This dielectric with another form of masking and shadowing, and without compensation, which
+    /// depends on the form.
     #[must_use]
     pub fn with_masking(self, masking: Masking) -> Self {
         Self { masking, returned: None, ..self }
     }
 
-    /// The same with a compensation of what one bounce loses, by albedos from tables.
+    /// This dielectric with a compensation of the light that one bounce loses, by albedos from
+    /// tables.
     ///
     /// # Errors
-    /// [`BindError`] if the tables hold no albedo of the lobe for its index and form of masking; it
-    /// names the lines of a recipe that add one.
+    /// [`BindError`] if the tables hold no albedo of the lobe for its index and form of masking;
+    /// the error has the lines of a recipe that add one.
     pub fn compensated(
         self,
         tables: &Tables,
@@ -123,8 +124,8 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
         Ok(self.compensated_by(albedo, compensation))
     }
 
-    /// The same by albedos that are at hand, which must be of the same lobe and index; their form
-    /// of masking becomes that of the dielectric.
+    /// [`compensated`](Self::compensated) by given albedos, which must be of the same lobe and
+    /// index; their form of masking becomes that of the dielectric.
     #[must_use]
     pub fn compensated_by(self, albedo: DielectricAlbedo, compensation: Compensation) -> Self {
         let masking = albedo.masking;
@@ -163,14 +164,13 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
         Some(Seen { v: sign * v, side: side(above), face, sign })
     }
 
-    /// The shares of a view's light; nothing is lost without compensation.
     #[inline(always)]
     fn account(&self, seen: &Seen) -> Account<'_> {
         let returned = self.returned.as_deref()?;
         Some((returned, returned.energy.shares(seen.side, seen.v)))
     }
 
-    /// The part of facets at a light that reflects or refracts.
+    /// The part of the mixture that facets reflect or refract to a light.
     #[inline(always)]
     fn facets(
         &self,
@@ -191,7 +191,7 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
                 Part { pdf, ..white.part([factor; N]) }
             }
             Some(Refraction { transmittance, jacobian, .. }) => {
-                // The light as the facet's other side sees it.
+                // The opposite of the light is above the surface.
                 let facet = self.lobe.facet(v, m, -l, self.masking);
                 let pdf = saturated(transmittance * jacobian * facet.density);
                 Part { weight: [facet.weight * factor * scale; N], pdf }
@@ -199,7 +199,7 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
         }
     }
 
-    /// The mixture at a light, of a view from above.
+    /// The mixture at a light, both as in [`Seen`].
     #[inline(always)]
     fn mixture(
         &self,
@@ -229,8 +229,8 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
         Mixture { p: 1.0 - lost, facets, broad }
     }
 
-    /// The facet between a view from above and a light; `None` if there is none, or none but one
-    /// that is only sampled.
+    /// The facet between view and light as in [`Seen`]; `None` if there is none, or if it is only
+    /// sampled.
     #[inline(always)]
     fn between(&self, seen: &Seen, l: Vec3) -> Option<Sender> {
         if l.z > 0.0 {
@@ -241,14 +241,13 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
         is_known.then_some((facet.m, Some(facet)))
     }
 
-    /// Whether a drawn facet may be one that is only sampled. Those far from it are not looked for
-    /// between the view and the light, which differs by rounding alone.
+    /// Whether a drawn facet may be one that is only sampled. For others the drawn facet is used as
+    /// it is: the facet found between the view and the light differs by rounding alone.
     #[inline(always)]
     fn may_be_steep(&self, seen: &Seen, (m, refraction): &Sender) -> bool {
         self.has_pole && refraction.is_some() && m.z < 2.0 * seen.face.steep()
     }
 
-    /// Light drawn by a facet of normal m.
     #[inline(always)]
     fn drawn(seen: &Seen, choice: f32, m: Vec3) -> Option<(Vec3, Sender)> {
         let facing = seen.v.dot(m);
@@ -307,7 +306,7 @@ impl<L: MicrofacetDistribution, const N: usize> Bsdf<N> for Dielectric<L, N> {
                 let m = self.lobe.sample_visible_normal(seen.v, u);
                 let (l, sender) = Self::drawn(&seen, rest, m)?;
                 if self.may_be_steep(&seen, &sender) {
-                    // As evaluation will find it.
+                    // Decided as evaluation does.
                     let found = self.between(&seen, l);
                     if found.is_none() {
                         let facets = self.facets(&seen, account, l, sender, scale);

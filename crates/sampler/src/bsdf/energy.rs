@@ -1,5 +1,5 @@
-//! What a dielectric interface does with the light of either side: the shares that one bounce
-//! reflects and transmits, and where the light of further bounces goes.
+//! The energy of a dielectric interface for light from either side: the shares that one bounce
+//! reflects and transmits, and the distribution of the light of further bounces.
 
 use microfacet_core::fresnel::dielectric;
 
@@ -9,7 +9,6 @@ use super::interface::Interface;
 use crate::albedo::{DielectricAlbedo, fresnel_average};
 use glam::Vec3;
 
-/// The accounts of one interface.
 #[derive(Clone, Debug)]
 pub(super) struct Energy {
     /// The albedos of one bounce; `None` of a smooth interface, which loses nothing.
@@ -17,7 +16,7 @@ pub(super) struct Energy {
     compensation: Compensation,
     eta: f32,
     /// The average that is lost to further bounces, from outside and from inside, and the share of
-    /// it that they reflect.
+    /// it that further bounces reflect.
     lost: [f32; 2],
     reflected: [f32; 2],
     /// The average that is transmitted from outside, compensation included.
@@ -36,25 +35,24 @@ pub(super) struct Shares {
 
 impl Shares {
     fn of([reflection, transmission]: [f32; 2]) -> Self {
-        // Interpolation may have them exceed one by the tables' error.
+        // Interpolation may make the sum exceed 1 by the tables' error.
         Self { reflection, transmission, lost: (1.0 - reflection - transmission).max(0.0) }
     }
 }
 
-/// The index of the side above the surface; that below it is the other of 0 and 1.
+/// The index of the side above the surface; the side below has 1.
 pub(super) const OUTSIDE: usize = 0;
 
-/// Index of the side of a view.
 #[inline(always)]
 pub(super) fn side(above: bool) -> usize {
     if above { OUTSIDE } else { 1 - OUTSIDE }
 }
 
 impl Energy {
-    /// Of a smooth interface of index η, inside over outside.
+    /// The energy of a smooth interface of index η, inside over outside.
     pub(super) fn smooth(eta: f32) -> Self {
-        // Averages are taken on the thin side, whose reflectance has no kink; what enters from one
-        // side and from the other differs by η².
+        // Averages are taken on the thin side, whose reflectance has no kink; the averages
+        // transmitted from the two sides differ by η².
         let dense = eta.max(1.0 / eta);
         let thin = 1.0 - fresnel_average(|cos| dielectric(dense, cos));
         let transmitted = if eta >= 1.0 { thin } else { thin / (dense * dense) };
@@ -63,10 +61,11 @@ impl Energy {
         Self { albedo, compensation, eta, lost, transmitted, reflected, back }
     }
 
-    /// Of a rough interface whose albedos are those of the same lobe, index and form of masking.
+    /// The energy of a rough interface; the albedos must be those of its lobe, index and form of
+    /// masking.
     pub(super) fn rough(albedo: DielectricAlbedo, compensation: Compensation, eta: f32) -> Self {
         let sides = [&albedo.outside, &albedo.inside];
-        // By the same formulas as single views, so that a furnace closes.
+        // By the same formulas as single views, so that a white furnace closes.
         let averages = sides.map(|curve| {
             curve.average_of(|shares| {
                 let Shares { reflection, transmission, lost } = Shares::of(shares);
@@ -75,8 +74,8 @@ impl Energy {
             })
         });
         let lost = averages.map(|[_, _, lost, _]| lost);
-        // The flux that changes sides is the same either way, by reciprocity; as much of it as one
-        // bounce would send there, from the side that sends less.
+        // By reciprocity the lost flux that changes sides is the same in both directions. It is
+        // split as one bounce splits its light, and the smaller of the two results is taken.
         let squared = f64::from(eta) * f64::from(eta);
         let [outside, inside] = averages.map(|[reflection, transmission, lost, _]| {
             let sum = reflection + transmission;
@@ -102,7 +101,7 @@ impl Energy {
         }
     }
 
-    /// The shares of a view, which is taken as above whatever its sign.
+    /// The shares of a view, given above the surface on either side.
     #[inline]
     pub(super) fn shares(&self, side: usize, v: Vec3) -> Shares {
         match &self.albedo {
@@ -123,7 +122,7 @@ impl Energy {
         if self.compensation == Compensation::Turquin { turquin(shares.lost, 1.0) } else { 1.0 }
     }
 
-    /// The part of a view's lost light that a lobe of further bounces gives back: all or nothing.
+    /// The share of a view's light that a lobe of further bounces returns: all that is lost, or 0.
     #[inline(always)]
     pub(super) fn returned(&self, shares: &Shares) -> f32 {
         if self.compensation == Compensation::KullaConty { shares.lost } else { 0.0 }
@@ -135,7 +134,7 @@ impl Energy {
         self.reflected[side]
     }
 
-    /// The densities from which the lobes of further bounces on either side are drawn.
+    /// The densities of the lobes of further bounces on either side.
     pub(super) fn broad(&self) -> [Broad; 2] {
         match self.compensation {
             Compensation::KullaConty => {
@@ -146,34 +145,35 @@ impl Energy {
     }
 
     /// π times the lobe of further bounces between a view and a light on a given side, over the
-    /// share of the lost light that goes there: for a view of `lost` light it integrates to that.
+    /// share of the lost light that goes to that side: for a view it integrates to `lost`.
     #[inline(always)]
     pub(super) fn lobe(&self, lost: f32, side: usize, there: &Shares) -> f32 {
         kulla_conty(lost, there.lost, self.lost[side])
     }
 
-    /// What all bounces together transmit of the light of a view from outside.
+    /// The share of a view's light from outside that all bounces together transmit.
     #[inline(always)]
     pub(super) fn transmitted(&self, shares: &Shares) -> f32 {
         shares.transmission * self.factor(shares)
             + (1.0 - self.reflected[OUTSIDE]) * self.returned(shares)
     }
 
-    /// Its cosine-weighted average over views.
+    /// The cosine-weighted average of [`transmitted`](Self::transmitted) over views.
     pub(super) fn transmitted_average(&self) -> f32 {
         self.transmitted
     }
 
-    /// What is left of light between the coat and a base of albedo ρ, times η²: 1 − ρ R, with R the
-    /// share of diffuse light from inside that the coat sends back.
+    /// η² (1 − ρ R) for a base of albedo ρ, with R the share of diffuse light from inside that the
+    /// coat reflects.
     ///
-    /// R is what all bounces do not transmit, or without compensation what one bounce reflects.
+    /// R is the share that all bounces do not transmit, or without compensation the share that one
+    /// bounce reflects.
     pub(super) fn left(&self, base: f32) -> f32 {
         let squared = self.eta * self.eta;
         match (&self.albedo, self.compensation) {
             (Some(_), Compensation::None) => squared * (1.0 - base * self.back),
-            // From the flux outside, 1 − R = T/η², so that what enters a white base leaves it again
-            // to rounding; without the cancellation of 1 − (1 − T/η²).
+            // By reciprocity 1 − R = T/η², so that the light that enters a white base leaves it
+            // again to rounding; this avoids the cancellation of 1 − (1 − T/η²).
             _ => squared * (1.0 - base) + base * self.transmitted,
         }
     }

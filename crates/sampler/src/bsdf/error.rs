@@ -1,4 +1,4 @@
-//! Why a BSDF cannot be made.
+//! Errors of making a BSDF.
 
 use alloc::boxed::Box;
 use alloc::format;
@@ -16,7 +16,7 @@ use crate::material::LobeKey;
 pub enum BindError {
     /// An index of refraction η or an extinction k outside its range, or NaN.
     Index {
-        /// Which it is, `eta` or `k`.
+        /// The parameter, `eta` or `k`.
         name: &'static str,
         /// The number given.
         value: f64,
@@ -25,7 +25,7 @@ pub enum BindError {
     },
     /// A reflectance outside [0, 1], or NaN.
     Reflectance {
-        /// Which it is: `f0`, `tint` or `base`.
+        /// The parameter: `f0`, `tint` or `base`.
         name: &'static str,
         /// The number given.
         value: f32,
@@ -47,8 +47,8 @@ pub enum BindError {
         /// Whether the round lobe of √(σx σy) could stand in.
         stand_in: bool,
     },
-    /// What the tables report: a lobe, γ, σ, index or form of masking that they do not cover, or a
-    /// name that they do not know.
+    /// The tables' error: a lobe, γ, σ, index or form of masking that they do not cover, or a name
+    /// that they do not have.
     Material(MaterialError),
     /// A named material whose recipe states no reflectance, so that no BSDF follows from it.
     NoFresnel(String),
@@ -101,7 +101,7 @@ microfacet_core::debug_in_words!(BindError);
 impl core::error::Error for BindError {}
 
 impl BindError {
-    /// The lines of a recipe that add a missing albedo, if that is what this is about.
+    /// The lines of a recipe that add the missing albedo; `None` for other errors.
     pub fn recipe(&self) -> Option<String> {
         let Self::NoAlbedo { lobe, eta, masking, .. } = self else { return None };
         let fresnel = match eta {

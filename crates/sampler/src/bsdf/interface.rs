@@ -8,29 +8,30 @@ use super::Transport;
 use super::error::BindError;
 use super::reflectance::indices;
 
-/// Indices of refraction, inside over outside. Those of matter lie well within it.
+/// The range of indices of refraction, inside over outside, far wider than that of matter.
 const ETA: [f64; 2] = [1e-3, 1e3];
 
-/// Closer to 1, single precision cannot tell what is refracted from what goes straight on.
+/// For |η − 1| below this, single precision does not distinguish refracted light from light that
+/// goes straight on.
 const NOTHING: f64 = 1e-5;
 
-/// Checks an index of refraction, inside over outside; one next to 1 becomes 1.
+/// The index of refraction, inside over outside, in single precision; 1 if next to 1.
 pub(super) fn checked(eta: f64) -> Result<f32, BindError> {
     indices("eta", &[eta], ETA)?;
     Ok(if (eta - 1.0).abs() < NOTHING { 1.0 } else { eta as f32 })
 }
 
-/// What single precision leaves unknown of a facet's cosine m·n, found from a view and a light as
-/// (v + η l)·n/|v + η l|, is to be a hundredth of it. The sum is rounded to 2⁻²⁵ (1 + η), and it is
-/// at least |1 − η| long.
+/// The error of a facet's cosine m·n, found from a view and a light as (v + η l)·n/|v + η l|, is to
+/// be at most a hundredth of it. The sum is rounded to 2⁻²⁵ (1 + η), and its length is at least
+/// |1 − η|.
 const STEEP: f32 = 100.0 / (1 << 25) as f32;
 
-/// At most this cosine is steep, however near η is to 1.
+/// The largest cosine that counts as steep, however near η is to 1.
 const STEEPEST: f32 = 0.01;
 
-/// The cosine m·n below which a facet that refracts is not known from the view and the light well
-/// enough for a D with a pole at the horizon, so that it is only sampled (see
-/// [`Dielectric`](crate::Dielectric)); the same for η and 1/η.
+/// The cosine m·n below which a refracting facet is only sampled if D has a pole at the horizon
+/// (see [`Dielectric`](crate::Dielectric)): the view and the light do not determine the facet well
+/// enough. The same for η and 1/η.
 #[inline(always)]
 pub fn steep_cosine(eta: f32) -> f32 {
     (STEEP * (1.0 + eta) / (1.0 - eta).abs()).min(STEEPEST)
@@ -43,7 +44,7 @@ pub(super) struct Interface {
     eta: f32,
 }
 
-/// A facet that refracts: its normal, above the horizon, and what the density of the light needs.
+/// A facet that refracts: its normal, above the horizon, and quantities of the light's density.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Refraction {
     pub(super) m: Vec3,
@@ -55,7 +56,7 @@ pub(super) struct Refraction {
 }
 
 impl Interface {
-    /// Of index η, inside over outside, seen from outside (`above`) or inside.
+    /// The interface of index η, inside over outside, seen from outside (`above`) or inside.
     #[inline(always)]
     pub(super) fn new(eta: f32, above: bool) -> Self {
         Self { eta: if above { eta } else { 1.0 / eta } }
@@ -67,7 +68,6 @@ impl Interface {
         self.eta
     }
 
-    /// See [`steep_cosine`].
     #[inline(always)]
     pub(super) fn steep(self) -> f32 {
         steep_cosine(self.eta)
@@ -82,7 +82,6 @@ impl Interface {
         }
     }
 
-    /// The reflectance of a facet.
     #[inline(always)]
     pub(super) fn reflectance(self, facing: f32) -> f32 {
         dielectric(self.eta, facing.min(1.0))
@@ -110,15 +109,15 @@ impl Interface {
     #[inline(always)]
     pub(super) fn facet(self, v: Vec3, l: Vec3) -> Option<Refraction> {
         let eta = self.eta;
-        // In double precision, since little of either is left where η is near 1.
+        // In double precision, because v + η l cancels where η is near 1.
         let [v64, l64] = [v, l].map(|w| w.to_array().map(f64::from));
         let h: [f64; 3] = core::array::from_fn(|i| v64[i] + f64::from(eta) * l64[i]);
         let length = sqrt64(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
-        // Straight on without a change of index, where no facet is told from another.
+        // The sum vanishes for light that goes straight on with η = 1, where the facet is not
+        // determined.
         if !(length > 0.0) {
             return None;
         }
-        // Above the horizon.
         let scale = if h[2] < 0.0 { -1.0 / length } else { 1.0 / length };
         let m = Vec3::from(h.map(|x| (x * scale) as f32));
         let length = length as f32;
@@ -167,7 +166,7 @@ mod tests {
         let inside = Interface::new(1.5, false);
         assert!(inside.refract(grazing, Vec3::Z, grazing.z).is_none());
         assert_eq!(inside.reflectance(grazing.z), 1.0);
-        // Both on one side of every facet.
+        // View and light on one side of every facet.
         assert!(
             Interface::new(1.5, true).facet(grazing, Vec3::new(0.9, 0.0, -0.435_889_9)).is_none()
         );

@@ -5,13 +5,13 @@ use core::str::FromStr;
 
 use microfacet_tables::Reflectance;
 
-/// A metal whose complex index of refraction, eta + i k, is known by measurement.
+/// A metal with its measured complex index of refraction, eta + i k.
 ///
 /// [`eta`](Self::eta) and [`k`](Self::k) are triples for the red, green and blue of linear light,
 /// relative to vacuum (or air, which differs by 0.03 %). They are the index at three single
-/// wavelengths, 650, 550 and 450 nm, and no averages over the bands of a colour. Each is
-/// interpolated linearly in the wavelength between the two nearest rows of the published table, and
-/// rounded to three decimals, halves up.
+/// wavelengths, 650, 550 and 450 nm, not averages over bands. Each is interpolated linearly in the
+/// wavelength between the two nearest rows of the published table, and rounded to three decimals,
+/// halves up.
 ///
 /// The tables are those of <https://refractiveindex.info> (CC0), by shelf, book and page:
 ///
@@ -86,7 +86,7 @@ impl Metal {
         Self::Tungsten,
     ];
 
-    /// What is known of it: its name, η, k, and where they were published.
+    /// Name, η, k, and where they were published.
     const fn row(self) -> (&'static str, [f64; 3], [f64; 3], &'static str) {
         match self {
             Self::Gold => ("gold", [0.156, 0.424, 1.383], [3.602, 2.472, 1.916], JOHNSON_1972),
@@ -244,7 +244,6 @@ mod tests {
         }
     }
 
-    /// Reflectance at normal incidence.
     fn colour(metal: Metal) -> [f64; 3] {
         let (eta, k) = (metal.eta(), metal.k());
         [0, 1, 2].map(|i| {
@@ -258,17 +257,17 @@ mod tests {
         for metal in Metal::ALL {
             assert!(metal.eta().iter().chain(&metal.k()).all(|&x| x > 0.0), "{metal}");
         }
-        // Yellow and red metals: little blue, and of copper little green as well.
+        // Yellow and red metals reflect little blue, and copper little green as well.
         for metal in [Gold, Copper, Brass] {
             let [r, g, b] = colour(metal);
             assert!(r > 0.85 && r > g && g > b && b < 0.6, "{metal}: {:?}", colour(metal));
         }
         assert!(colour(Gold)[1] > 0.75 && colour(Brass)[1] > 0.75 && colour(Copper)[1] < 0.65);
-        // White ones, of which silver is the brightest.
+        // White metals, of which silver is the brightest.
         let within = |metal, low, high| colour(metal).iter().all(|&r| low < r && r < high);
         assert!(within(Silver, 0.97, 1.0), "{:?}", colour(Silver));
         assert!(within(Aluminium, 0.9, 0.93), "{:?}", colour(Aluminium));
-        // Grey ones.
+        // Grey metals.
         for metal in [Iron, Chromium, Titanium, Nickel, Platinum, Cobalt, Tungsten] {
             assert!(within(metal, 0.45, 0.71), "{metal}: {:?}", colour(metal));
         }

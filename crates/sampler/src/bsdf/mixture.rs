@@ -7,7 +7,8 @@ use microfacet_core::saturated;
 
 use super::broad::{Broad, cosine_pdf};
 
-/// One of the two: a weight f |cos θ_l|/pdf by channel and a density, both of that part alone.
+/// Facets or broad lobe: a weight f |cos θ_l|/pdf by channel and a density, both of this part of
+/// the mixture alone.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Part<const N: usize> {
     pub(super) weight: [f32; N],
@@ -27,14 +28,14 @@ impl<const N: usize> Part<N> {
     /// f, without the cosine.
     #[inline(always)]
     pub(super) fn f(&self, l: Vec3) -> [f32; N] {
-        // The density of facets may be `f32::MAX`, and its quotient by a small cosine more.
+        // The density of facets may be `f32::MAX`, and the quotient by a small cosine overflow.
         let inverse = saturated(1.0 / l.z.abs());
         self.weight.map(|weight| saturated(weight * self.pdf * inverse))
     }
 }
 
-/// Facets, drawn with the probability `p`, and the broad lobe with 1 − p; a density of either is
-/// that within its own part. Where p is 1 there is no broad lobe.
+/// Facets, drawn with the probability `p`, and the broad lobe with 1 − p; the density of each is
+/// within its own part. Where p is 1 there is no broad lobe.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mixture<const N: usize> {
     pub(super) p: f32,
@@ -43,7 +44,6 @@ pub(super) struct Mixture<const N: usize> {
 }
 
 impl<const N: usize> Mixture<N> {
-    /// The density of both together.
     #[inline(always)]
     pub(super) fn pdf(&self) -> f32 {
         self.p * self.facets.pdf + (1.0 - self.p) * self.broad.pdf
@@ -58,11 +58,9 @@ impl<const N: usize> Mixture<N> {
 
     /// The weight of a light drawn from the mixture, f |cos θ_l|/pdf.
     ///
-    /// Both densities are divided by their sum first, so that a quotient of large numbers is none
-    /// of them.
+    /// Both densities are divided by their sum first, so that nothing overflows.
     #[inline(always)]
     pub(super) fn weight(&self) -> [f32; N] {
-        // All the light is in the facets, and nothing is in the broad lobe.
         if self.p == 1.0 {
             return self.facets.weight;
         }
@@ -76,7 +74,7 @@ impl<const N: usize> Mixture<N> {
     }
 }
 
-/// A choice clamped to [0, 1), NaN to 0: at 1 it would choose what has the probability 0.
+/// A choice clamped to [0, 1), NaN to 0: 1 would choose an event of probability 0.
 #[inline(always)]
 pub(super) fn choice(choice: f32) -> f32 {
     unit(choice).min(1.0 - 0.5 * f32::EPSILON)
@@ -85,11 +83,10 @@ pub(super) fn choice(choice: f32) -> f32 {
 /// Whether a [`choice`] takes a part of probability `p`, and the choice that is left within it.
 #[inline(always)]
 pub(super) fn chosen(number: f32, p: f32) -> (bool, f32) {
-    // The latter may round to 1.
+    // The quotient may round to 1, so it is clamped.
     if number < p { (true, number / p) } else { (false, choice((number - p) / (1.0 - p))) }
 }
 
-/// Whether no part of two directions is infinite or NaN; z is tested where sides are.
 #[inline(always)]
 pub(super) fn are_finite(v: Vec3, l: Vec3) -> bool {
     (v.dot(v) + l.dot(l)).is_finite()

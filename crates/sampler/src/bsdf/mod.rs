@@ -1,12 +1,11 @@
 //! Complete materials: what a renderer evaluates and samples, made of a lobe, a reflectance, and
-//! albedos where light of further bounces is to be given back.
+//! albedos if multiple scattering is compensated.
 //!
-//! `conductor`, `dielectric` and `plastic` are the BSDFs, `any` any of them;
-//! `reflectance` is Fresnel's or Schlick's of conductors, `metal` metals by name, and
-//! `interface` the geometry of refraction. `facets` reflect singly; `mixture` joins them with
-//! `broad`, the density of light of further bounces. `energy` and `compensation` keep account
-//! of what one bounce returns; `bind` finds its albedos in tables, and `error` says what is
-//! missing.
+//! `conductor`, `dielectric` and `plastic` are the BSDFs, `any` any of them; `reflectance` is
+//! Fresnel's or Schlick's of conductors, `metal` metals by name, and `interface` the geometry of
+//! refraction. `facets` is single reflection; `mixture` joins it with `broad`, the density of light
+//! of further bounces. `energy` and `compensation` compute the shares of light that one bounce
+//! returns and loses; `bind` finds albedos in tables, and `error` says which are missing.
 
 mod any;
 mod bind;
@@ -36,7 +35,7 @@ pub use reflectance::ConductorFresnel;
 
 use glam::Vec3;
 
-/// What is transported along a path, which decides how much a refraction scales it.
+/// What is transported along a path: it decides the scale of refraction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Transport {
     /// Radiance, along paths that start at the camera: refraction scales it by (n_v/n_l)², since it
@@ -47,7 +46,7 @@ pub enum Transport {
     Importance,
 }
 
-/// What happened to a sampled direction.
+/// Whether light was reflected or transmitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Event {
     /// The light is on the side of the view.
@@ -66,14 +65,14 @@ pub struct BsdfSample<const N: usize = 3> {
     pub weight: [f32; N],
     /// Density of `l`, as [`Bsdf::pdf`] returns it; 0 for a delta event.
     pub pdf: f32,
-    /// Whether light was reflected or transmitted.
+    /// Whether the light was reflected or transmitted.
     pub event: Event,
-    /// Whether the event is a delta, whose light no evaluation finds: a smooth surface sends all
-    /// light in one direction, and what facets next to the horizon refract is [only
-    /// sampled](Dielectric) for γ < 2.
+    /// Whether the event is a delta, for which evaluation gives 0: a smooth surface sends all light
+    /// in one direction, and what facets next to the horizon refract is [only sampled](Dielectric)
+    /// for γ < 2.
     pub delta: bool,
     /// n_l/n_v, the index of refraction on the side of `l` over that on the side of the view: 1 for
-    /// reflection. Russian roulette on radiance undoes the weight's 1/η² by it.
+    /// reflection. Russian roulette on radiance removes the weight's 1/η² with it.
     pub eta: f32,
 }
 
@@ -83,7 +82,7 @@ impl<const N: usize> BsdfSample<N> {
         Self { l, weight, pdf, event: Event::Reflection, delta: false, eta: 1.0 }
     }
 
-    /// The mirror image of a view from above.
+    /// The mirror reflection of a view from above, a delta event.
     fn mirrored(v: Vec3, weight: [f32; N]) -> Self {
         Self { delta: true, ..Self::reflected(Vec3::new(-v.x, -v.y, v.z), weight, 0.0) }
     }
@@ -94,18 +93,17 @@ impl<const N: usize> BsdfSample<N> {
 /// # Conventions
 /// - Directions are unit vectors in the tangent frame, n = +z. Both the view `v` and the light `l`
 ///   point away from the surface. z > 0 is outside, z < 0 inside.
-/// - η = n_inside/n_outside, of the medium below the surface over that above it, from wherever it
-///   is seen.
-/// - f excludes the cosine; the weight of a sample is f |cos θ_l|/pdf, formed as that and not as a
-///   quotient, so that it stays finite where f and the density do not.
-/// - Densities are per steradian of `l`, of all that [`sample`](Self::sample) draws together but
-///   deltas.
+/// - η = n_inside/n_outside, of the medium below the surface over that above it, for views of
+///   either side.
+/// - f excludes the cosine; the weight of a sample is f |cos θ_l|/pdf, computed without dividing,
+///   so that it stays finite where f and the density do not.
+/// - Densities are per steradian of `l`, of all that [`sample`](Self::sample) draws except deltas.
 /// - f obeys f(v, l) = f(l, v) for reflection; for transmission f(v, l)/n_v² = f(l, v)/n_l² of
-///   radiance. Turquin's compensation alone breaks this.
-/// - A delta event has f = pdf = 0, and its sample says so; those of lobes that are
+///   radiance. Only Turquin's compensation violates this.
+/// - A delta event has f = pdf = 0, and its sample is flagged; the events of lobes that are
 ///   [effectively smooth](crate::MicrofacetDistribution::is_effectively_smooth) are deltas too.
 /// - A conductor or plastic seen from below is black, and so is everything for a direction that is
-///   in the surface (z = 0) or not a number.
+///   in the surface (z = 0) or NaN.
 ///
 /// Values are finite: an f or a density beyond the range of `f32` is `f32::MAX`.
 /// [An example](crate#a-material).
@@ -113,9 +111,8 @@ pub trait Bsdf<const N: usize = 3> {
     /// Draws a light for a view: `choice` chooses among events, `u` the direction.
     ///
     /// The three numbers are in [0, 1], clamped to it and NaN to 0; they are used independently, so
-    /// a stratified `u` stays stratified. `None` where the drawn facet sends no light: it reflects
-    /// below the horizon, or refracts above it. The path ends there with a weight of 0, which
-    /// counts in a mean.
+    /// a stratified `u` stays stratified. `None` where the drawn facet reflects below the horizon,
+    /// or refracts above it. The path then ends with a weight of 0, which counts in a mean.
     fn sample(
         &self,
         v: Vec3,
@@ -137,10 +134,10 @@ pub trait Bsdf<const N: usize = 3> {
         self.eval_pdf(v, l, Transport::Radiance).1
     }
 
-    /// Whether all its events are deltas, so that [`eval`](Self::eval) is 0 everywhere and no light
-    /// needs to be sampled.
+    /// Whether all its events are deltas: [`eval`](Self::eval) is 0 everywhere and lights need not
+    /// be sampled.
     fn is_delta(&self) -> bool;
 
-    /// Whether light of the other side reaches a view.
+    /// Whether light passes from one side to the other.
     fn transmits(&self) -> bool;
 }

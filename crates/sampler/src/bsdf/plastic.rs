@@ -19,8 +19,8 @@ use crate::albedo::DielectricAlbedo;
 use crate::material::MicrofacetDistribution;
 use crate::tables::Tables;
 
-/// A rough dielectric coat over a Lambert base, which gets exactly the light that the coat lets
-/// through.
+/// A rough dielectric coat over a Lambert base, which receives exactly the light that the coat
+/// transmits.
 ///
 /// Conventions are those of [`Bsdf`]; black from below. The coat reflects as [`Dielectric`] does.
 /// Of the light T(v) that it transmits from the direction of v the base of albedo ρ returns
@@ -29,13 +29,13 @@ use crate::tables::Tables;
 /// f = T(v) T(l) ρ / (π η² (1 − ρ R))
 /// ```
 ///
-/// with R the share of diffuse light from inside that the coat sends back, so that the light
-/// reflected between base and coat any number of times is counted. T and R are from the tables'
-/// albedos, compensation included; a smooth coat needs no tables. With a compensation a white base
-/// returns all light. With a [`Bounded`](crate::lobe::Bounded) lobe fewer samples are lost.
+/// with R the share of diffuse light from inside that the coat reflects, so that light reflected
+/// between base and coat any number of times is included. T and R are from the tables' albedos,
+/// compensation included; a smooth coat needs no tables. With a compensation a white base returns
+/// all light. With a [`Bounded`](crate::lobe::Bounded) lobe fewer samples are lost.
 ///
-/// Albedos of a rough coat are in no default set. They are baked for a recipe that names it, for
-/// round lobes of the family; [`StandIn::Round`] takes them for anisotropic and tilted ones.
+/// The default set has no albedos of rough coats. They are baked for a recipe that names the coat,
+/// for round lobes of the family; [`StandIn::Round`] uses them for anisotropic and tilted lobes.
 ///
 /// ```
 /// # #[cfg(feature = "embedded")] {
@@ -49,7 +49,7 @@ use crate::tables::Tables;
 /// let recipe = rough.err().and_then(|why| why.recipe()).expect("refused for want of an albedo");
 /// // Bake these lines, and load the set: Tables::from_bytes(&file).
 /// assert!(recipe.contains("gamma = 2.5\nfresnel = { dielectric = 1.5 }"));
-/// // Without microfacets none is needed.
+/// // A smooth coat needs no albedo.
 /// assert!(Plastic::new(Smooth, 1.5, green, &tables, none, StandIn::Refused).is_ok());
 /// # }
 /// # Ok::<(), microfacet_sampler::MaterialError>(())
@@ -79,8 +79,8 @@ impl<L: MicrofacetDistribution, const N: usize> Plastic<L, N> {
     ///
     /// # Errors
     /// [`BindError`] for an η outside [1e-3, 1e3], a ρ outside [0, 1], or a rough coat whose albedo
-    /// the tables do not hold, which is needed without compensation too; it names the lines of a
-    /// recipe that add it.
+    /// the tables do not hold, which is needed without compensation too; the error has the lines of
+    /// a recipe that add it.
     pub fn new(
         lobe: L,
         eta: f64,
@@ -93,7 +93,7 @@ impl<L: MicrofacetDistribution, const N: usize> Plastic<L, N> {
         Self::new_masked(lobe, eta, base, masking, tables, compensation, stand_in)
     }
 
-    /// The same with a form of masking and shadowing.
+    /// [`new`](Self::new) with a form of masking and shadowing.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -111,8 +111,8 @@ impl<L: MicrofacetDistribution, const N: usize> Plastic<L, N> {
         })
     }
 
-    /// The same by albedos that are at hand, which must be of the same lobe and index; their form
-    /// of masking becomes that of the plastic.
+    /// [`new`](Self::new) by given albedos, which must be of the same lobe and index; their form of
+    /// masking becomes that of the plastic.
     ///
     /// # Errors
     /// [`BindError`] for an η outside [1e-3, 1e3] or a ρ outside [0, 1].
@@ -145,7 +145,7 @@ impl<L: MicrofacetDistribution, const N: usize> Plastic<L, N> {
         });
         let diffuse = base.map(|base| {
             let left = energy.left(base);
-            // No light comes in where none gets out.
+            // 1 − ρ R = 0 only where the coat transmits nothing.
             if left > 0.0 { base / left } else { 0.0 }
         });
         let mean = diffuse.iter().sum::<f32>() / N as f32;
@@ -189,27 +189,25 @@ impl<L: MicrofacetDistribution, const N: usize> Plastic<L, N> {
         if diffuse > 0.0 { facets / (facets + diffuse) } else { 1.0 }
     }
 
-    /// The coat's facets.
     #[inline(always)]
     fn facets(&self) -> Facets<'_, L> {
         Facets { lobe: &self.lobe, masking: self.masking }
     }
 
-    /// What the coat reflects of a light, compensation included.
+    /// The part of the coat's facets, compensation included.
     #[inline(always)]
     fn coat(&self, shares: &Shares, white: White) -> Part<N> {
         let reflectance = Interface::new(self.eta, true).reflectance(white.cos);
         white.part([reflectance * self.energy.factor(shares); N])
     }
 
-    /// The coat's facet halfway between a view and a light.
     #[inline(always)]
     fn halfway(&self, shares: &Shares, v: Vec3, l: Vec3) -> Part<N> {
-        // That of a smooth coat is a delta.
+        // The reflection of a smooth coat is a delta.
         if self.smooth { Part::NONE } else { self.coat(shares, self.facets().halfway(v, l)) }
     }
 
-    /// The base at a light, with what the coat's further bounces reflect.
+    /// The part of the base, with the further bounces that the coat reflects.
     #[inline(always)]
     fn diffuse(&self, shares: &Shares, l: Vec3) -> Part<N> {
         let energy = &self.energy;

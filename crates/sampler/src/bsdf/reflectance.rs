@@ -18,7 +18,7 @@ enum Form<const N: usize> {
     Schlick {
         f0: [f32; N],
     },
-    /// With the depth of the tint's dip.
+    /// F0, and the depth of the tint's dip.
     Tinted {
         f0: [f32; N],
         dip: [f32; N],
@@ -29,7 +29,7 @@ enum Form<const N: usize> {
     },
 }
 
-/// Indices of refraction and extinctions: outside, squares would leave single precision.
+/// Ranges of η and k: outside, squares would leave single precision.
 const ETA: [f64; 2] = [1e-6, 1e6];
 const K: [f64; 2] = [0.0, 1e6];
 
@@ -51,7 +51,7 @@ impl<const N: usize> ConductorFresnel<N> {
 
     /// OpenPBR's metal: Schlick's with a tint of the reflectance at μ = 1/7, about 82° (Kutz, Hašan
     /// & Edmondson 2021, *Novel aspects of the Adobe Standard Material*, eq. 2–5); 0 where that
-    /// formula falls below it, as for a small F0 and tint.
+    /// formula is negative, as for a small F0 and tint.
     ///
     /// # Errors
     /// [`BindError::Reflectance`] unless every F0 and tint lies in [0, 1].
@@ -81,7 +81,7 @@ impl<const N: usize> ConductorFresnel<N> {
             Form::Schlick { f0 } => f0.map(|f0| schlick(f0, 1.0, cos)),
             Form::Tinted { f0, dip } => {
                 let weight = f82_weight(cos);
-                // The dip of a small F0 and tint is deeper beside its peak than what is left.
+                // Near its peak the dip of a small F0 and tint exceeds Schlick's reflectance.
                 let at = |i: usize| (schlick::<f32>(f0[i], 1.0, cos) - dip[i] * weight).max(0.0);
                 core::array::from_fn(at)
             }
@@ -112,7 +112,6 @@ impl From<Metal> for ConductorFresnel {
     }
 }
 
-/// Checks that every number is a reflectance.
 pub(super) fn reflectances(name: &'static str, all: &[f32]) -> Result<(), BindError> {
     match all.iter().find(|x| !(0.0..=1.0).contains(*x)) {
         Some(&value) => Err(BindError::Reflectance { name, value }),
@@ -120,7 +119,6 @@ pub(super) fn reflectances(name: &'static str, all: &[f32]) -> Result<(), BindEr
     }
 }
 
-/// Checks that every index lies in a range.
 pub(super) fn indices(name: &'static str, all: &[f64], range: [f64; 2]) -> Result<(), BindError> {
     let [low, high] = range;
     match all.iter().find(|x| !(low..=high).contains(*x)) {
@@ -144,7 +142,7 @@ mod tests {
         ];
         for fresnel in all {
             assert_eq!((fresnel.at(1.0), fresnel.at(0.0)), (f0, [1.0; 3]));
-            // Beyond, as rounding of a cosine may have it, and for NaN.
+            // A cosine above 1 by rounding, and NaN.
             assert_eq!((fresnel.at(1.000_000_1), fresnel.at(f32::NAN)), (f0, [1.0; 3]));
         }
         let [_, metal] = all;

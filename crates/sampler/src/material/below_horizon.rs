@@ -17,11 +17,11 @@ use microfacet_tables::axis::hermite::{Cell, cubic_cells, horner, locate};
 use super::student_t::{Stretched, StudentT};
 use crate::elementary::{exp2, log2};
 
-/// Up to this a the excess is a difference from the shadowing table, which loses digits beyond.
+/// Up to this a the excess is a difference of values from the shadowing table, which loses digits
+/// beyond it.
 const NEAR: f32 = 0.8;
-/// Cells of [`ExcessShare`].
 const CELLS: usize = 32;
-/// Larger a are taken as this one, whose square is within the range of f32.
+/// Larger a are clamped to this one, whose square is within the range of f32.
 const DEEPEST: f32 = 1e15;
 
 /// E[(X−a)⁺]/E[X; X>a] = (1 + s a²)/(2a²)·₂F₁(1, 3/2; 1+1/s; −1/(s a²)) of one shape, for a ≥
@@ -32,7 +32,8 @@ pub(crate) struct ExcessShare(Vec<Cell>);
 impl ExcessShare {
     pub(crate) fn new(s: f64) -> Self {
         let reach = 1.0 / (f64::from(NEAR) * f64::from(NEAR));
-        // Over w = 1/a², which is regular at w = 0; slopes from halves of a cell.
+        // Over w = 1/a², in which the share is regular at w = 0; slopes by differences over halves
+        // of a cell.
         let at = |halves: i32| {
             let w = reach * f64::from(halves) / (2 * CELLS) as f64;
             0.5 * (s + w) / continued_fraction(s, w)
@@ -76,7 +77,7 @@ impl<'a> SlopeBelowHorizon<'a> {
         if a > NEAR {
             // ∫ₐ^∞ x p(x) dx = M₀ (1 + s a²)^(−k), and k = 1/s − ½.
             let exponent = (0.5 * lobe.s - 1.0) * lobe.normals.log2_growth(a * a);
-            // Products of less would be subnormal, and slow.
+            // Products with a smaller number would be subnormal, and slow.
             let decay = exp2(f32x4::splat(exponent.max(-100.0))).to_array()[0];
             return lobe.slices.first_moment() * decay * share.at(1.0 / (a * a));
         }

@@ -5,7 +5,7 @@
 //! the slope lies in the disc of radius 1/cos θ about tan θ towards the viewer. The in-plane slopes
 //! of the disc are an interval of u₁, since the inverse CDF ascends; sampling that interval changes
 //! the density by a factor only. Eto & Tokuyoshi 2023 do so for GGX by shrinking its cap; the
-//! interval does it for every γ. The variance of a white furnace falls to between a third and nine
+//! interval serves every γ. The variance of a white furnace falls to between a third and nine
 //! tenths (`cargo run -p microfacet-sampler --example bounded`).
 //!
 //! The ends need not be exact: any interval that contains the shortest one, with its own length as
@@ -32,12 +32,12 @@ use crate::error::{BatchError, same_lengths};
 /// limits.
 const CELLS: usize = 64;
 const SHARED: usize = 4;
-/// Between two nodes of the limits, where they are compared with the numbers they enclose.
+/// Steps between two nodes of the limits at which they are compared with the numbers they enclose.
 const BETWEEN: usize = 2;
 
 /// How far a limit is moved beyond the number that it must enclose, so that neither rounding nor
-/// what lies between the compared places loses a direction: a part of the furthest that
-/// interpolation strays near it, and a constant.
+/// the range between the compared points loses a direction: a share of the largest error of
+/// interpolation near it, and a constant.
 const MARGIN: f64 = 0.5;
 const SLACK: f64 = 1e-6;
 
@@ -46,8 +46,8 @@ const SLACK: f64 = 1e-6;
 ///
 /// Prepared once for a material ([`StudentT::bounded`], a millisecond), it draws a normal in about
 /// twice the time of [`MicrofacetDistribution::sample_visible_normal`], in batches as well
-/// (`cargo run --profile dist -p microfacet-bench`). Every normal that reflects upwards keeps
-/// its place; some of the others remain. Estimators of reflection that weight with G2/G1 times
+/// (`cargo run --profile dist -p microfacet-bench`). Every normal that reflects upwards is kept;
+/// some of the others remain. Estimators of reflection that weight with G2/G1 times
 /// [`share`](BoundedView::share), or divide by a density of [`BoundedView`], are unbiased, and of
 /// lower variance than those of [`MicrofacetDistribution::sample_visible_normal`]. After Eto &
 /// Tokuyoshi 2023, *Bounded VNDF Sampling for Smith-GGX Reflections*,
@@ -74,7 +74,7 @@ pub struct Bounded {
     limits: Vec<[f32; 2]>,
 }
 
-/// The visible normals of a view without most of those that reflect it below the horizon.
+/// The visible normals of one view without most of those that reflect it below the horizon.
 #[derive(Clone, Copy, Debug)]
 pub struct BoundedView<'a> {
     lobe: &'a StudentT,
@@ -110,7 +110,7 @@ impl Bounded {
         let groups = last.div_ceil(SHARED);
         let row_of = |group: usize| (group * SHARED).min(last);
         let node = |group: usize, cell: usize| numbers[row_of(group)][BETWEEN * cell];
-        // How far above and below the numbers of a cell interpolation strays.
+        // The largest errors of interpolation above and below the numbers of a cell.
         let strays = |group: usize, cell: usize| {
             let (mut above, mut below) = (0.0_f64, 0.0_f64);
             let rows = &numbers[row_of(group)..=row_of(group + 1)];
@@ -138,7 +138,7 @@ impl Bounded {
             let beyond = |stray: f64| (1.0 + MARGIN) * stray + SLACK;
             [(u - beyond(above)) as f32, (u + beyond(below)) as f32]
         };
-        // Interpolation reads a row and a node beyond the last, with weight 0.
+        // A guard: interpolation reads a row and a node beyond the last, with weight 0.
         let rows = (0..=groups).chain([groups]);
         let mut limits: Vec<_> = rows
             .flat_map(|group| (0..=CELLS).map(move |cell| (group, cell)))
@@ -148,7 +148,7 @@ impl Bounded {
         Self { lobe, limits }
     }
 
-    /// The lobe, for all that concerns evaluation.
+    /// The lobe, for evaluation.
     pub fn lobe(&self) -> &StudentT {
         &self.lobe
     }
@@ -189,7 +189,7 @@ impl Bounded {
         share: &mut [f32],
     ) -> Result<(), BatchError> {
         same_lengths(&[("v", v.len()), ("u", u.len()), ("m", m.len()), ("share", share.len())])?;
-        /// Enough to fill the lanes, and few enough to stay in registers and the first cache.
+        /// Enough to fill the lanes, and few enough to stay in the first cache.
         const BLOCK: usize = 32;
         let blocks = v.chunks(BLOCK).zip(u.chunks(BLOCK));
         for (((v, u), m), share) in blocks.zip(m.chunks_mut(BLOCK)).zip(share.chunks_mut(BLOCK)) {
@@ -214,12 +214,12 @@ impl Bounded {
         Ok(())
     }
 
-    /// The limit for a view and a slope, each a node and the weight of the next.
+    /// The limit at a view and a slope, each given as a node and the weight of the next.
     #[inline(always)]
     fn limit(&self, (row, w): (i32, f32), (cell, t): (i32, f32), end: usize) -> f32 {
         const STRIDE: usize = CELLS + 1;
         let at = row.wrapping_mul(STRIDE as i32).wrapping_add(cell) as u32 as usize;
-        // Only NaN leaves the table.
+        // The index is out of the table only for NaN.
         let Some(near) = self.limits.get(at..at + STRIDE + 2) else { return end as f32 };
         let along = |i: usize| near[i][end] + t * (near[i + 1][end] - near[i][end]);
         let (low, high) = (along(0), along(STRIDE));
@@ -227,7 +227,6 @@ impl Bounded {
         (low + w * (high - low)).clamp(0.0, 1.0)
     }
 
-    /// The intervals of four views.
     #[inline(always)]
     fn intervals_of(&self, [vx, vy, vz]: [f32x4; 3]) -> [f32x4; 2] {
         let (lobe, slices) = (&self.lobe, &self.lobe.slices);
@@ -241,8 +240,8 @@ impl Bounded {
     }
 
     /// The start and the length of the intervals of u₁ that hold all numbers at which lights can be
-    /// above the horizon, of views with stretched horizontal length ρ and coordinate `at`; `limits`
-    /// reads them at rows and at the slopes of both ends.
+    /// above the horizon, for views with stretched horizontal length ρ and coordinate `at`;
+    /// `limits` reads the limits at rows and at the slopes of both ends.
     #[inline(always)]
     fn intervals(
         &self,
@@ -254,9 +253,9 @@ impl Bounded {
     ) -> [f32x4; 2] {
         let (lobe, slices) = (&self.lobe, &self.lobe.slices);
         let group = Nodes::new(at * (1.0 / SHARED as f32));
-        // tan θ ∓ 1/cos θ, the nearer end without its cancellation, in slopes along the view's
-        // azimuth, which are sin/ρ unit slopes along the stretched one.
-        // Where ρ vanishes, so does sin, and the azimuth is that of x.
+        // tan θ ∓ 1/cos θ, the nearer end without cancellation, in slopes along the view's azimuth,
+        // which are sin/ρ unit slopes along the stretched azimuth. Where ρ vanishes, so does sin,
+        // and the azimuth is that of x.
         const LITTLE: f32 = 1e-25;
         let (across, rho) = (sin + LITTLE, rho + LITTLE * lobe.sigma_x);
         let cells = [(-cos, 1.0 + sin), (1.0 + sin, cos)].map(|(x, z)| {
@@ -275,7 +274,7 @@ impl Bounded {
     }
 }
 
-/// The lobe's own answers, but for normals that are drawn for reflection.
+/// As the lobe, except for the normals that are drawn for reflection.
 impl MicrofacetDistribution for Bounded {
     #[inline(always)]
     fn d(&self, m: Vec3) -> f32 {
@@ -338,7 +337,7 @@ impl MicrofacetDistribution for Bounded {
     }
 }
 
-/// Nodes before four coordinates, and the weights of the next.
+/// Nodes below four coordinates, and the weights of the next nodes.
 #[derive(Clone, Copy)]
 struct Nodes {
     node: [i32; 4],
@@ -358,7 +357,6 @@ impl Nodes {
     }
 }
 
-/// The number u ∈ [0, 1] of an interval.
 #[inline(always)]
 fn within(from: f32, share: f32, u: f32) -> f32 {
     (from + unit(u) * share).min(1.0)
@@ -377,22 +375,22 @@ impl BoundedView<'_> {
         m.map_or_else(|| lobe.sample_general(v.x, v.y, v.z, u), first_three)
     }
 
-    /// Probability that an unbounded sample would be one of these, in (0, 1]: the factor on a
+    /// Probability that an unbounded sample lies in the interval, in (0, 1]: the factor on a
     /// sample's weight.
     pub fn share(&self) -> f32 {
         self.share
     }
 
     /// Density per steradian with which [`sample`](Self::sample) draws `m`, for an `m` that
-    /// reflects the view above the horizon: the analytic one, with G1 from the table.
+    /// reflects the view above the horizon. Analytic, with G1 from the table.
     ///
-    /// The density of reflected directions is this over 4 v·m.
+    /// The density of reflected directions is this density over 4 v·m.
     #[inline]
     pub fn visible_normal_pdf(&self, m: Vec3) -> f32 {
         self.lobe.visible_normal_pdf(self.v, m) / self.share
     }
 
-    /// The density of the table's samples for such an `m`, see
+    /// The density of the table's samples for an `m` that reflects the view above the horizon, see
     /// [`MicrofacetDistribution::table_pdf`].
     pub fn table_pdf(&self, m: Vec3) -> f32 {
         self.lobe.table_pdf(self.v, m) / self.share
@@ -426,7 +424,7 @@ mod tests {
                 }
             }
         }
-        // They are of use.
+        // The intervals are not much longer than needed.
         assert!(excess / f64::from(count) < 1e-3, "{}", excess / f64::from(count));
     }
 }

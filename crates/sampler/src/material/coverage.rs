@@ -14,18 +14,17 @@ pub(super) const LOBE: [&[Kind]; 3] = [
     &[Kind::VisibleSlopeConditional],
 ];
 
-/// Weights along the γ axis at s; `None` where the table does not cover it, as its axis may.
+/// Weights along the γ axis at s; `None` where the table does not cover s, even if its axis does.
 pub(super) fn shape_weights(table: &Table, s: f64) -> Option<Weights> {
     if table.subject.lobe.contains_s(s) { table.axes[0].weights(s) } else { None }
 }
 
-/// The same at an end of the axis, for a shape that is outside by rounding alone.
+/// Weights at an end of the axis, for a shape that is outside by rounding alone.
 pub(super) fn end_weights(table: &Table, s: f64) -> Option<Weights> {
     let [first, last] = table.axes[0].ends();
     table.subject.lobe.contains_s(s).then(|| table.axes[0].weights(s.clamp(first, last)))?
 }
 
-/// Whether the table serves s.
 fn serves(table: &Table, s: f64) -> bool {
     shape_weights(table, s).or_else(|| end_weights(table, s)).is_some()
 }
@@ -35,7 +34,8 @@ pub(crate) fn contains(tables: &[Table], s: f64) -> bool {
     LOBE.iter().all(|kinds| of_kinds(tables, kinds).any(|table| serves(table, s)))
 }
 
-/// The shapes that lobes can have, as ascending intervals of s; one shape is one of no width.
+/// The shapes that lobes can have, as ascending intervals of s; a single shape is an interval of no
+/// width.
 pub(crate) fn shapes(tables: &[Table]) -> Vec<[f64; 2]> {
     let [first, rest @ ..] =
         LOBE.map(|kinds| united(of_kinds(tables, kinds).flat_map(intervals).collect()));
@@ -45,13 +45,13 @@ pub(crate) fn shapes(tables: &[Table]) -> Vec<[f64; 2]> {
     })
 }
 
-/// What two intervals have in common; ends that are the same but for rounding, one shape.
+/// The intersection of two intervals: a single shape where their ends differ by rounding alone.
 fn common(a: [f64; 2], b: [f64; 2]) -> Option<[f64; 2]> {
     let (low, high) = (a[0].max(b[0]), a[1].min(b[1]));
     (low <= high * (1.0 + SAME)).then_some([low.min(high), high])
 }
 
-/// The same in words, by γ.
+/// The [`shapes`] in words, by γ.
 pub(super) fn in_words(tables: &[Table]) -> String {
     // The larger s is the smaller γ.
     let gammas = |[low, high]: [f64; 2]| {
@@ -75,7 +75,7 @@ fn intervals(table: &Table) -> Vec<[f64; 2]> {
     alloc::vec![table.subject.lobe.s()]
 }
 
-/// Ascending, with those joined that touch.
+/// Ascending intervals; those that touch are joined.
 fn united(mut all: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     all.sort_by(|a, b| a[0].total_cmp(&b[0]));
     all.dedup_by(|next, last| {

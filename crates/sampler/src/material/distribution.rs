@@ -1,4 +1,4 @@
-//! What every lobe can be asked: one trait for all of them.
+//! The trait of all lobes.
 
 use glam::Vec3;
 use microfacet_core::{Masking, saturated};
@@ -6,17 +6,17 @@ use microfacet_core::{Masking, saturated};
 use super::key::LobeKey;
 use crate::error::{BatchError, same_lengths};
 
-/// Below this mean absolute slope a surface counts as a mirror. For GGX it is α, which pbrt's
-/// `EffectivelySmooth` compares with the same number; for γ near 3/2 it is much larger than σ,
-/// since a few steep normals take much of what is seen.
+/// Below this mean absolute slope a surface counts as a mirror. For GGX the mean slope is α, which
+/// pbrt's `EffectivelySmooth` compares with the same number; for γ near 3/2 it is much larger than
+/// σ, because of a few steep normals.
 pub(crate) const SMOOTH: f32 = 1e-3;
 
-/// The masking 1 − G1 of such a surface at [`GRAZING`], at most: that of GGX with α = 1e-3. Tails
-/// that are longer take more at grazing views than their mean slope tells, and the surface would
-/// brighten there as it becomes a mirror.
+/// The largest masking 1 − G1 of a smooth surface at [`GRAZING`]: that of GGX with α = 1e-3. Longer
+/// tails mask more at grazing views than GGX of the same mean slope, and the surface would brighten
+/// there as it becomes a mirror.
 pub(crate) const SMOOTH_MASKED: f32 = 2.5e-3;
 
-/// The cosine of the view at which a smooth surface is judged.
+/// The cosine of the view at which the masking of a smooth surface is limited.
 pub(crate) const GRAZING: f32 = 0.01;
 
 /// Whether a normal faces away from the view by more than rounding does to a drawn one.
@@ -27,8 +27,8 @@ pub(crate) fn is_hidden(v: Vec3, m: Vec3) -> bool {
 
 /// The density of visible normals, (v·m)⁺ D(m)/A(v), from `facing` = v·m and 1/A.
 ///
-/// Products are kept finite one by one: of vectors far from unit length one factor may overflow
-/// and another vanish, and 0·∞ is no number.
+/// Products are kept finite one by one: for vectors far from unit length one factor may overflow
+/// and another vanish, and 0·∞ is NaN.
 #[inline(always)]
 pub(crate) fn visible_density(facing: f32, d: f32, inverse_area: f32) -> f32 {
     let finite = |x: f32| if x < f32::MAX { x } else { f32::MAX };
@@ -48,7 +48,7 @@ pub struct Facet {
 impl Facet {
     /// The facet of a lobe whose projected area is (v·n)/G1, from D and the G1 of view and light.
     ///
-    /// Both numbers are of the same G1, so that a BRDF made of them is reciprocal to rounding.
+    /// Both fields use the same G1, so that a BRDF made of them is reciprocal to rounding.
     #[inline(always)]
     pub(crate) fn of_g1(d: f32, v: Vec3, [g1_v, g1_l]: [f32; 2], masking: Masking) -> Self {
         if !(v.z > 0.0) {
@@ -61,19 +61,20 @@ impl Facet {
 
 /// A lobe: a distribution of microfacet normals whose parameters are fixed, under Smith's model.
 ///
-/// It is what renderers know as `TrowbridgeReitzDistribution` (pbrt) or `MicrofacetDistribution`
-/// (Mitsuba); σ is their α. The trait of the same name in `microfacet-model` has D, G1, Λ, G2,
-/// weights, visible normals and densities in double precision, with the same arguments in the same
-/// order. Smith's model: Heitz 2014, *Understanding the masking-shadowing function in
-/// microfacet-based BRDFs*, <https://jcgt.org/published/0003/02/03/>.
+/// Renderers call it `TrowbridgeReitzDistribution` (pbrt) or `MicrofacetDistribution` (Mitsuba); σ
+/// is their α. The trait of the same name in `microfacet-model` has D, G1, Λ, G2, weights, visible
+/// normals and densities in double precision, with the same arguments in the same order. Smith's
+/// model: Heitz 2014, *Understanding the masking-shadowing function in microfacet-based BRDFs*,
+/// <https://jcgt.org/published/0003/02/03/>.
 ///
 /// Directions are unit vectors in the tangent frame, n = +z. `v` is the view, `l` the light, `m` a
 /// microfacet normal; densities are per steradian. Everything is one-sided: views and lights at or
 /// below the horizon have G1 = 0 and Λ = ∞. So negate a direction on the other side of a
 /// transmitting surface first, v ↦ −v and l ↦ −l: facets stay where they are, and m above the
-/// horizon. Its mirror image in the plane z = 0 sees other facets: the density of visible normals
-/// is another there, and for a tilted lobe masking is, too. Sampling takes a view below the horizon
-/// at it; densities are for views above it. [An example](crate#a-bsdf-of-your-own).
+/// horizon. The mirror image of a direction in the plane z = 0 sees other facets: there the density
+/// of visible normals differs, and for a tilted lobe masking too. Sampling moves a view below the
+/// horizon to the horizon; densities are for views above it. [An
+/// example](crate#a-bsdf-of-your-own).
 pub trait MicrofacetDistribution {
     /// Normal distribution function D(m), with ∫ D(m) (m·n) dm = 1; 0 for m at or below the
     /// horizon.
@@ -109,25 +110,25 @@ pub trait MicrofacetDistribution {
     /// A normal visible from `v`, from two numbers in [0, 1] (clamped to them, NaN to 0).
     ///
     /// From tables `u[0]` chooses the slope along the azimuth of the view and `u[1]` that across,
-    /// both rising, so that stratified numbers give stratified normals; each lobe says more. It has
-    /// unit length to 4 ulp, lies above the horizon, and faces the view to rounding
-    /// (v·m > −5e-7).
+    /// both rising, so that stratified numbers give stratified normals. The normal has unit length
+    /// to 4 ulp, lies above the horizon, and faces the view to rounding (v·m > −5e-7).
     fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3;
 
     /// Density of visible normals, (v·m)⁺ D(m)/A(v), with A the projected area of the microsurface
     /// (Heitz & d'Eon 2014, eq. 2, <https://doi.org/10.1111/cgf.12417>). 1/A is G1(v)/(v·n), but
-    /// for a tilted lobe where its G1 is clamped to 1. The density of reflected lights is this over
-    /// 4 v·m.
+    /// for a tilted lobe where its G1 is clamped to 1. The density of reflected lights is this
+    /// density over 4 v·m.
     ///
-    /// 0 where `m` faces away or lies below the horizon; finite at grazing views. It is the
-    /// analytic density with the area from the tables.
+    /// 0 where `m` faces away or lies below the horizon; finite at grazing views. Analytic, with
+    /// the area from the tables.
     fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32;
 
     /// Density with which [`sample_visible_normal`](Self::sample_visible_normal) draws `m`, the
     /// tables' errors included: an estimator that divides by it is unbiased.
     ///
-    /// [`Radial`](crate::lobe::Radial) alone returns [`visible_normal_pdf`](Self::visible_normal_pdf)
-    /// here, from which its samples differ by the errors of its tables.
+    /// Except for [`Radial`](crate::lobe::Radial): it returns
+    /// [`visible_normal_pdf`](Self::visible_normal_pdf), from which its samples differ by the
+    /// errors of its tables.
     #[inline]
     fn table_pdf(&self, v: Vec3, m: Vec3) -> f32 {
         self.visible_normal_pdf(v, m)
@@ -135,17 +136,17 @@ pub trait MicrofacetDistribution {
 
     /// A visible normal and its analytic density, [`visible_normal_pdf`](Self::visible_normal_pdf).
     ///
-    /// The samples differ from it by the errors of the tables, some 1e-4 of the CDF; where that
-    /// bias matters divide by [`table_pdf`](Self::table_pdf).
+    /// The samples differ from this density by the errors of the tables, some 1e-4 of the CDF;
+    /// where that bias matters divide by [`table_pdf`](Self::table_pdf).
     #[inline]
     fn sample_with_pdf(&self, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
         let m = self.sample_visible_normal(v, u);
         (m, self.visible_normal_pdf(v, m))
     }
 
-    /// The facet that takes light between `v` and `l`, both above the horizon: with
-    /// [`reflecting_share`](Self::reflecting_share) all of a lobe that the evaluation of a BSDF
-    /// calls. Its normal is along `m`, of any length, so that a half vector need not be normalised.
+    /// The facet that reflects or refracts light between `v` and `l`, both above the horizon. Its
+    /// normal is along `m`, of any length, so that a half vector need not be normalised. The
+    /// evaluation of a BSDF calls only this and [`reflecting_share`](Self::reflecting_share).
     ///
     /// The microfacet BRDF without Fresnel is density·weight/(4 l·n), the density of the reflected
     /// light density/4. For light that is transmitted `l` is the direction opposite to it.
@@ -181,7 +182,7 @@ pub trait MicrofacetDistribution {
         1.0
     }
 
-    /// What tables of albedos know the lobe by; the default is a lobe that they do not know.
+    /// The key of the lobe in tables of albedos; by default, no table holds it.
     fn key(&self) -> LobeKey {
         LobeKey::Unknown
     }
@@ -190,8 +191,9 @@ pub trait MicrofacetDistribution {
     /// absolute slope, in the rougher direction, is below 1e-3 (for GGX: α < 1e-3), so is the slope
     /// of its mean normal, and 1 − G1 is at most 2.5e-3 where cos θ = 0.01.
     ///
-    /// A mirror returns all light, which just above this one bounce does to 6e-3 at cos θ ≥ 0.01,
-    /// whatever γ; the surface brightens by that where a texture of roughness crosses it.
+    /// A mirror returns all light; just above this limit one bounce returns it to 6e-3 at cos
+    /// θ ≥ 0.01, whatever γ. The surface brightens by that where a texture of roughness crosses the
+    /// limit.
     fn is_effectively_smooth(&self) -> bool;
 
     /// Bytes of table that lookups touch; 0 for closed forms.

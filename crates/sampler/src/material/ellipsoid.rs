@@ -1,4 +1,4 @@
-//! The Ellipsoid distribution at run time: a Student-t lobe seen through a matrix.
+//! The Ellipsoid distribution at run time: a Student-t lobe transformed by a matrix.
 
 use core::f32::consts::FRAC_1_PI;
 
@@ -22,11 +22,11 @@ use crate::error::MaterialError;
 /// <https://doi.org/10.1145/2815618>) at γ = 2, a skewed Student-t for other γ, a skewed Beckmann
 /// at γ = ∞.
 ///
-/// It reads the same tables as [`StudentT`]: a direction is taken through the matrix and looked up,
-/// and the normal is taken back. Directions are unit vectors in the tangent frame, n = +z. A view
-/// above the surface but below the lobe's own horizon (the lobe leans away, and the view grazes)
-/// uses no table: its normals are drawn by rejection, with random numbers derived from the two
-/// given.
+/// It reads the same tables as [`StudentT`]: a direction is transformed by the matrix and looked
+/// up, and the normal is transformed back. Directions are unit vectors in the tangent frame,
+/// n = +z. A view above the surface but below the lobe's own horizon (the lobe leans away, and the
+/// view grazes) uses no table: its normals are drawn by rejection, with random numbers derived from
+/// the two given.
 #[derive(Clone, Debug)]
 pub struct Ellipsoid {
     /// The lobe with σ = 1.
@@ -50,7 +50,7 @@ impl Ellipsoid {
         self.lobe.gamma()
     }
 
-    /// The same lobe through another matrix; the tables are not read again.
+    /// The same lobe with another matrix; the tables are not read again.
     ///
     /// # Errors
     /// [`MaterialError::Sigma`] for a roughness that leaves single precision.
@@ -69,15 +69,15 @@ impl Ellipsoid {
     #[inline(always)]
     fn normal_to_unit(&self, m: Vec3) -> (Vec3, f32) {
         let Matrix { p, q, r, x, y } = self.matrix;
-        // Reciprocals do not wait for the normal, as four successive divisions of it would: 10 of
-        // 80 ns for a normal and its density.
+        // Reciprocals do not wait for the normal, as four successive divisions would: this saves 10
+        // of 80 ns for a normal and its density.
         let (along, aside) = (1.0 / p, 1.0 / r);
         let uy = (m.y - y * m.z) * aside;
         let ux = (m.x - x * m.z - q * uy) * along;
         (Vec3::new(ux, uy, m.z), along * aside)
     }
 
-    /// 1/(area of the microsurface seen along v), within the reach of the table and outside it.
+    /// 1/(area of the microsurface seen along v), for views above and below the lobe's horizon.
     #[inline(always)]
     fn inverse_area(&self, w: Vec3, at: &Stretched) -> f32 {
         if w.z >= 0.0 { self.lobe.inverse_area(at) } else { self.inverse_area_below(w, at) }
@@ -124,14 +124,15 @@ impl Ellipsoid {
             [1.0; 2],
             to_tangent,
         )?;
-        // Not where an almost singular matrix has taken squares out of range, so that the length is
-        // not 1 (nor where z was as long as the rest before it shrank), or a normal below the
-        // smallest cosine.
+        // Refused where an almost singular matrix has taken squares out of range, so that the
+        // length is not 1 (also where z was as long as the rest before it shrank), and for a normal
+        // below the smallest cosine.
         let [[off, ..], [_, _, z, _]] = [(sum(m * m) - 1.0).abs(), m].map(f32x4::to_array);
         (off < 5e-7 && z >= HORIZON).then_some(m)
     }
 
-    /// A visible normal of a lobe with a heavy part, out of line as that of [`StudentT`].
+    /// A visible normal of a lobe with a heavy part, out of line so that calls of other lobes stay
+    /// short.
     #[inline(never)]
     fn sample_heavy(&self, x: f32, y: f32, z: f32, u: [f32; 2]) -> Vec3 {
         let m = self.sample_fast::<true>(Vec3::new(x, y, z), u);
@@ -153,7 +154,7 @@ impl Ellipsoid {
         };
         let Matrix { p, q, r, x, y } = self.matrix;
         let m = Vec3::new(p * mx + q * my + x * mz, r * my + y * mz, mz);
-        // The squares of what an almost singular matrix leaves may be no normal numbers.
+        // With an almost singular matrix the squares of components may be subnormal.
         above_horizon(m / m.abs().max_element())
     }
 
@@ -175,7 +176,7 @@ impl MicrofacetDistribution for Ellipsoid {
 
     /// Smith masking G1(v) = min(1, (v·n)/area); 0 at and below the horizon.
     ///
-    /// The clamp keeps a lobe that leans away from returning more light than it receives.
+    /// Without the clamp a lobe that leans away would return more light than it receives.
     #[inline]
     fn g1(&self, v: Vec3) -> f32 {
         if !(v.z > 0.0) {
@@ -210,7 +211,7 @@ impl MicrofacetDistribution for Ellipsoid {
         self.weight(v.z * self.inverse_area(w, &self.lobe.stretch(w)), l, masking)
     }
 
-    /// As the two functions above, with the area of the view found once.
+    /// From `visible_normal_pdf` and `reflection_weight`, with the area of the view computed once.
     #[inline]
     fn facet(&self, v: Vec3, m: Vec3, l: Vec3, masking: Masking) -> Facet {
         if !(v.z > 0.0 && m.z > 0.0) {
@@ -224,8 +225,8 @@ impl MicrofacetDistribution for Ellipsoid {
         Facet { density: saturated(d * inverse_area), weight }
     }
 
-    /// The lobe's own, taken through the matrix. Views below the lobe's horizon draw from the
-    /// analytic density.
+    /// That of the untransformed lobe times the ratio of solid angles. For views below the lobe's
+    /// horizon samples have the analytic density.
     fn table_pdf(&self, v: Vec3, m: Vec3) -> f32 {
         let w = self.to_unit(v);
         if !(m.z > 0.0 && w.z >= 0.0) {
@@ -239,7 +240,7 @@ impl MicrofacetDistribution for Ellipsoid {
         // The ratio of solid angles, scale over the length cubed.
         let stretch = scale / length / (length * length);
         let density = self.lobe.density_of_samples(w, unit / length) * stretch;
-        // Of a normal far from unit length powers of the length are out of range, and 0·∞ is NaN.
+        // For a normal far from unit length powers of the length are out of range, and 0·∞ is NaN.
         if density > 0.0 { density.min(f32::MAX) } else { 0.0 }
     }
 

@@ -17,14 +17,13 @@ use crate::error::MaterialError;
 /// The smallest 1 − u₁: keeps a normal off the horizon, where its length may vanish.
 const LAST: f32 = 1.0 / 16_777_216.0;
 
-/// GGX (Trowbridge–Reitz), the member γ = 2 of the family, from closed forms alone: no table is
-/// needed, none is read, and nothing is interpolated.
+/// GGX (Trowbridge–Reitz), the member γ = 2 of the family, from closed forms alone, without tables.
 ///
-/// G1 is Walter et al. 2007, eq. 34 (<https://doi.org/10.2312/EGWR/EGSR07/195-206>). Visible normals
-/// are drawn by spherical caps (Dupuy & Benyoub 2023, *Sampling Visible GGX Normals with Spherical
-/// Caps*, listing 1, <https://doi.org/10.1111/cgf.14867>): `u[0]` chooses the height of a point on a
-/// cap and `u[1]` its azimuth about n, so the map from `u` to normals is another one than that of
-/// tables, of the same density.
+/// G1 is Walter et al. 2007, eq. 34 (<https://doi.org/10.2312/EGWR/EGSR07/195-206>). Visible
+/// normals are drawn by spherical caps (Dupuy & Benyoub 2023, *Sampling Visible GGX Normals with
+/// Spherical Caps*, listing 1, <https://doi.org/10.1111/cgf.14867>): `u[0]` chooses the height of a
+/// point on a cap and `u[1]` its azimuth about n, so the map from `u` to normals differs from that
+/// of tables; the density is the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ggx {
     alpha_x: f32,
@@ -51,7 +50,7 @@ impl Ggx {
         [self.alpha_x, self.alpha_y]
     }
 
-    /// A direction with its horizontal part times α; one below the horizon is taken at it.
+    /// A direction with its horizontal component times α; one below the horizon is moved to it.
     #[inline(always)]
     fn stretch(&self, v: Vec3) -> Vec3 {
         Vec3::new(self.alpha_x * v.x, self.alpha_y * v.y, v.z.max(0.0))
@@ -71,12 +70,12 @@ impl Ggx {
     fn inverse_area(&self, v: Vec3) -> f32 {
         let w = self.stretch(v);
         let length = sqrt(w.dot(w));
-        // The null vector, and views straight from below, have no area: any positive one will do.
+        // The null vector, and views straight from below, have area 0: any positive number serves.
         2.0 / (w.z + length).max(f32::MIN_POSITIVE)
     }
 
     /// A visible normal, of any length, which rounding may have put behind the silhouette: the half
-    /// vector of the stretched view and a point of the cap z > −w.z of the sphere of its length,
+    /// vector of the stretched view w and a point of the cap z > −w.z of the sphere of radius |w|,
     /// stretched back.
     #[inline(always)]
     fn along(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
@@ -108,7 +107,7 @@ impl MicrofacetDistribution for Ggx {
         (v.z.max(0.0) * self.inverse_area(v)).min(1.0)
     }
 
-    // Not inlined, it would find a view in memory that its caller has in registers.
+    // Without inlining the view would go from the caller's registers through memory.
     #[inline(always)]
     fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
         face(above_horizon(self.along(v, u)), Vec3::new(v.x, v.y, v.z.max(0.0)))
@@ -146,7 +145,7 @@ impl MicrofacetDistribution for Ggx {
 }
 
 /// A stretched view of unit length, since the squares of a short or long one would leave the range
-/// of f32; the null vector, and one whose own square does, are taken as normal incidence.
+/// of f32; the null vector, and one whose own square does, count as normal incidence.
 #[cold]
 #[inline(never)]
 fn lifted(w: Vec3, length: f32) -> Vec3 {

@@ -2,9 +2,10 @@
 //! viewer have a tail too heavy for a table, but one whose CDF has a closed form.
 //!
 //! The first random number chooses between the table and the tail by their shares of the visible
-//! area. Its share is M₀ρ/area, the term x sin θ p(x) for x > 0, with M₀ = κ/(G1/q at grazing); a
-//! lobe keeps it by the view coordinate of the table, where it needs neither a division nor a root.
-//! A single sample branches between the two; four follow both, and the wrong one is dropped.
+//! area. The share of the tail is M₀ρ/area, the term x sin θ p(x) for x > 0, with M₀ = κ/(G1/q at
+//! grazing); a lobe tabulates it over the view coordinate of the table, so that it needs neither a
+//! division nor a root. A single sample branches between table and tail; four lanes compute both
+//! and select.
 
 use alloc::vec::Vec;
 
@@ -22,11 +23,10 @@ pub(super) const CELLS_PER_ROW: usize = 2;
 /// The heavy part of a lobe, for all views.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Heavy {
-    /// Its share of the visible area, by cell of the view coordinate.
+    /// The share of the visible area, by cell of the view coordinate.
     pub(crate) shares: Vec<Cell>,
     /// 1/(2γ−3).
     pub(crate) exponent: f32,
-    /// √s.
     pub(crate) root_s: f32,
 }
 
@@ -34,8 +34,8 @@ impl Heavy {
     /// From its `share` of the visible area at t ∈ [0, 1], for a table of `rows` cells.
     pub(crate) fn new(gamma: f64, s: f64, rows: usize, share: impl Fn(f64) -> f64) -> Self {
         let cells = CELLS_PER_ROW * rows;
-        // Through four places of each cell: the share has a kink at the knots of the view's axis,
-        // which are between cells.
+        // Through four points of each cell: the share has kinks at the knots of the view's axis,
+        // which are ends of cells.
         let cell = |i: usize| {
             let [a, b, c, d] = [0.0, 1.0, 2.0, 3.0]
                 .map(|thirds| share(((i as f64 + thirds / 3.0) / cells as f64).min(1.0)));
@@ -59,13 +59,13 @@ impl Heavy {
     /// Half of x, and z, of the heavy part's slopes x : z at numbers descending from 1 to 0, and a
     /// factor on z.
     ///
-    /// The factor is kept apart until normals are of unit length: slopes of 10³⁰ units do occur,
-    /// and products of z would be subnormal, each of which costs as much as a whole sample.
+    /// The factor is kept apart until normals are of unit length: slopes of 10³⁰ occur, and
+    /// products of z would be subnormal, each of which costs as much as a whole sample.
     #[inline(always)]
     pub(crate) fn half_slopes(&self, number: f32x4) -> [f32x4; 3] {
         // (1 + s x²)^(−k) = ξ, so 1/√(1 + s x²) = ξ^(1/2k) = ζ and (x : 1) = (√(1−ζ²) : √s ζ).
         const LEAST: f32 = 1e-15;
-        // Beyond 2⁻¹⁰⁰ every normal is the lowest that there is.
+        // For ζ below 2⁻¹⁰⁰ every normal has the smallest cosine.
         let zeta = exp2((log2(number) * self.exponent).fast_max(f32x4::splat(-100.0)));
         let x = ((1.0 - zeta) * (1.0 + zeta)).fast_max(f32x4::ZERO).sqrt();
         let large = zeta.fast_max(f32x4::splat(LEAST));
@@ -84,7 +84,8 @@ impl Heavy {
     }
 }
 
-/// A random number along the plane of incidence, within the part that it belongs to.
+/// A random number along the plane of incidence, within the part of the distribution that it
+/// selects.
 pub(crate) enum Part {
     Tabulated(f32),
     Heavy(f32),
@@ -101,7 +102,8 @@ impl Part {
 }
 
 /// Random numbers along the plane of incidence, split between the tabulated part, which comes
-/// first, and the heavy one: the number within its part, and all ones where that is the heavy one.
+/// first, and the heavy one: the number within its part, and all ones where that part is the heavy
+/// one.
 #[inline(always)]
 pub(crate) fn parts(u: f32x4, share: f32x4) -> [f32x4; 2] {
     let unit = |x: f32x4| (x & x.simd_gt(0.0)).fast_min(f32x4::ONE);
@@ -146,7 +148,8 @@ mod tests {
                     (m.x * v.x + m.y * v.y) / m.z
                 };
                 let last = lobe.tabulated_share(v);
-                // The table ends with the steepest slope, the heavy part begins with the least.
+                // The tabulated part ends with the steepest slope, the heavy part begins with the
+                // least.
                 let (end, start) = (tilt(last), tilt(last.next_up().next_up()));
                 assert!(end > 1.0 && start < 0.1, "{gamma} {v}: {end} {start}");
             }

@@ -1,16 +1,17 @@
-//! Keeps normals above the horizon and facing their views, where rounding does not.
+//! Corrects normals that rounding has moved below the horizon or behind the silhouette.
 
 use glam::Vec3;
 
 use microfacet_core::math::sqrt;
 
-/// Smallest cosine of a sampled normal: keeps D finite, which for γ < 2 it is not on the horizon.
+/// Smallest cosine of a sampled normal: keeps D finite, which for γ < 2 has a pole on the horizon.
 pub(crate) const HORIZON: f32 = 1e-18;
 
 /// Turns a normal that rounding has put behind the silhouette back onto it.
 ///
 /// The silhouette's slope has the rounding of the view coordinate, which is coarse where σ is far
-/// below the view's tilt, and strong anisotropy lets the tilt across spoil the tilt along.
+/// below the view's tilt; with strong anisotropy the rounding of the tilt across also moves the
+/// tilt along.
 #[inline(always)]
 pub(crate) fn face(m: Vec3, v: Vec3) -> Vec3 {
     let facing = v.dot(m);
@@ -22,16 +23,15 @@ pub(crate) fn face(m: Vec3, v: Vec3) -> Vec3 {
     }
 }
 
-/// Parts of a normal and of a view whose sum is the normal on the silhouette.
+/// Factors of a normal and of a view whose sum is the normal on the silhouette.
 ///
-/// Out of line: in a caller's loop the compiler would else work it out for every normal. Two
-/// numbers, since a vector of three is returned in integer registers, and both ways would meet
-/// there.
+/// Out of line: inlined in a caller's loop, it would be computed for every normal. Two numbers,
+/// since a vector of three would be returned in integer registers.
 #[cold]
 #[inline(never)]
 fn turned_back(m: Vec3, v: Vec3, facing: f32) -> (f32, f32) {
-    // A view taken at the horizon is shorter than 1, and may be almost nothing; of one whose length
-    // is out of range nothing is taken.
+    // A view moved to the horizon is shorter than 1, and may be almost 0; a view whose length is
+    // out of range leaves the normal unchanged.
     let length2 = v.dot(v).max(f32::MIN_POSITIVE);
     let part = if length2 <= f32::MAX { facing / length2 } else { return (1.0, 0.0) };
     let turned = m - part * v;
@@ -39,13 +39,12 @@ fn turned_back(m: Vec3, v: Vec3, facing: f32) -> (f32, f32) {
     (inverse, -part * inverse)
 }
 
-/// Normalises a normal and raises it to the smallest cosine where it is lower.
+/// Normalises a normal and raises its cosine to [`HORIZON`] where it is lower.
 #[inline(always)]
 pub(crate) fn above_horizon(m: Vec3) -> Vec3 {
     raised(m * (1.0 / sqrt(m.dot(m))))
 }
 
-/// With the smallest cosine where it is lower.
 #[inline(always)]
 fn raised(m: Vec3) -> Vec3 {
     Vec3::new(m.x, m.y, m.z.max(HORIZON))

@@ -1,4 +1,4 @@
-//! What tables of albedos know a lobe by.
+//! The keys of lobes in tables of albedos.
 
 use alloc::format;
 use alloc::string::{String, ToString};
@@ -9,7 +9,7 @@ use microfacet_tables::LobeSpec;
 
 use super::matrix::Matrix;
 
-/// What tables of albedos know a lobe by: its parameters, as data.
+/// The key of a lobe in tables of albedos: its parameters.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum LobeKey {
@@ -23,7 +23,7 @@ pub enum LobeKey {
         /// γ.
         gamma: f64,
     },
-    /// A lobe that no table is of.
+    /// A lobe of which there is no table.
     Unknown,
 }
 
@@ -32,12 +32,12 @@ impl LobeKey {
         Self::Upright(LobeSpec::student_t(sigma.map(written), gamma))
     }
 
-    /// Whether it is a round lobe of the family.
+    /// Whether the lobe is round and of the family.
     pub fn is_round(&self) -> bool {
         matches!(self, Self::Upright(lobe) if lobe.is_family())
     }
 
-    /// Whether a table that names its own lobe is of this one, with a tilt in single precision.
+    /// Whether a table that names a lobe is of this one; a tilt is compared in single precision.
     pub(crate) fn is(&self, table: &LobeSpec) -> bool {
         match self {
             Self::Upright(lobe) => !lobe.is_family() && table.contains(lobe),
@@ -50,7 +50,7 @@ impl LobeKey {
         }
     }
 
-    /// σ and γ of the round lobe that stands in where there is no table of this one: for an
+    /// σ and γ of the round lobe that may replace this one where it has no table: for an
     /// anisotropic or tilted lobe that of the same area in slopes, √(σx σy).
     pub(crate) fn round(&self) -> Option<[f64; 2]> {
         match self {
@@ -69,7 +69,8 @@ impl LobeKey {
         self.round().is_some_and(|[_, gamma]| gamma < 2.0)
     }
 
-    /// A recipe's material of this lobe, as far as it knows it, with a reflectance.
+    /// The lines of a recipe's material of this lobe, as far as the key gives them, with a
+    /// reflectance.
     pub(crate) fn recipe(&self, fresnel: &str, masking: Masking) -> String {
         let lobe = match self {
             Self::Upright(LobeSpec { distribution: Some(label), .. }) => {
@@ -106,7 +107,7 @@ fn sigma(lobe: &LobeSpec) -> String {
     }
 }
 
-/// The number that was written where single precision has this one: 0.3, not 0.30000001192….
+/// The shortest decimal number that is `x` in single precision: 0.3, not 0.30000001192….
 fn written(x: f32) -> f64 {
     x.to_string().parse().unwrap_or_else(|_| x.into())
 }

@@ -1,4 +1,4 @@
-//! Any of the lobes: what a recipe's name stands for.
+//! Any of the lobes.
 
 use glam::Vec3;
 use microfacet_core::Masking;
@@ -8,9 +8,9 @@ use super::{
 };
 use crate::error::BatchError;
 
-/// One of the lobes, as [`Tables::material`](crate::Tables::material) gives it for a name.
+/// Any of the lobes, as [`Tables::material`](crate::Tables::material) returns it for a name.
 ///
-/// It answers everything that a [`MicrofacetDistribution`] does, for the price of a branch.
+/// It implements [`MicrofacetDistribution`] by a branch in each function.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Lobe {
@@ -40,7 +40,6 @@ macro_rules! from {
 
 from!(StudentT, Ggx, Ellipsoid, Radial, Bounded, Smooth);
 
-/// Calls one function of whichever lobe it is.
 macro_rules! each {
     ($lobe:ident, $one:ident => $call:expr) => {
         match $lobe {

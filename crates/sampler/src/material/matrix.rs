@@ -1,4 +1,4 @@
-//! The matrix of an ellipsoid, in the precision of the run time.
+//! The matrix of an ellipsoid, in single precision.
 
 use microfacet_core::Skew;
 

@@ -1,14 +1,14 @@
-//! The lobes of materials: distributions of normals whose parameters are fixed, so that only
-//! directions are left.
+//! The lobes of materials: distributions of normals with fixed parameters.
 //!
-//! [`distribution`] is the trait of them all. [`student_t`] reads slices of the tables ([`slices`])
-//! for masking and visible normals, of the shapes that all of them cover ([`coverage`]); [`lanes`]
-//! are its lookups in SIMD, with the part that no table holds from [`heavy`], and [`horizon`] mends
-//! what rounding does to a normal. [`normals`] is D in closed form. [`table_pdf`] is the density of
-//! what is drawn, and [`bounded`] leaves out normals that cannot reflect. [`ellipsoid`] takes
-//! directions through a [`matrix`] to a Student-t, and draws what lies [`below_horizon`] by
-//! rejection; [`radial`] has tables of its own, and [`ggx`] and the [`smooth`] surface need none.
-//! [`key`] is what albedo tables know a lobe by, and [`shape`] what exports write of one.
+//! [`distribution`] is the trait of all lobes. [`student_t`] reads slices of the tables
+//! ([`slices`]) for masking and visible normals, for the shapes that all of them cover
+//! ([`coverage`]); [`lanes`] are its lookups in SIMD, with the part that no table holds from
+//! [`heavy`], and [`horizon`] corrects normals that rounding has moved out of their domain.
+//! [`normals`] is D in closed form. [`table_pdf`] is the density of what is drawn, and [`bounded`]
+//! leaves out normals that cannot reflect. [`ellipsoid`] transforms directions by a [`matrix`] to a
+//! Student-t, and draws by rejection for views [`below_horizon`]; [`radial`] has tables of its own,
+//! and [`ggx`] and the [`smooth`] surface need none. [`key`] identifies a lobe to albedo tables,
+//! and [`shape`] is what exports write of one.
 
 mod below_horizon;
 mod bounded;

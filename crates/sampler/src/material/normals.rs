@@ -1,9 +1,8 @@
 //! The normal distribution function of a Student-t lobe, D, in closed form.
 //!
 //! With r/z the slope of a normal over σ, b = z² + s r² and γ = (1+s)/s, πσxσy D = z^(2γ−4) b^(−γ),
-//! which is computed as (b/z²)^(2−γ)/b²: for γ near 2 nothing large is raised to a power, for γ = 2
-//! nothing at all, and towards Beckmann the logarithm of b/z² = 1 + s r²/z² keeps the digits of a
-//! small s.
+//! which is computed as (b/z²)^(2−γ)/b²: the power is small for γ near 2 and 0 for γ = 2, and
+//! towards Beckmann the logarithm of b/z² = 1 + s r²/z² keeps the digits of a small s.
 
 use crate::elementary::{log2_growth, scaled_power_of_growth};
 
@@ -15,8 +14,9 @@ pub(crate) struct Normals {
     pub(crate) power: f32,
 }
 
-/// Stands for s = 0: the D of Beckmann to rounding, as far as D is not 0. Much less would make
-/// squares subnormal, and slow. A power of two, so that it and its reciprocal are not rounded.
+/// Stands for s = 0: the D of Beckmann to rounding, as far as D is not 0. A much smaller value
+/// would make squares subnormal, and slow. A power of two, so that it and its reciprocal are not
+/// rounded.
 const LEAST_S: f64 = 1.0 / 1_099_511_627_776.0;
 
 impl Normals {
@@ -25,10 +25,10 @@ impl Normals {
         Self { s: s as f32, power: (0.5 - 0.5 / s) as f32 }
     }
 
-    /// √(πσxσy D) of a normal above the horizon from the squares of its horizontal part over σ, of
-    /// its vertical part, and of its length, which need not be 1.
+    /// √(πσxσy D) of a normal above the horizon from the squares of its horizontal component over
+    /// σ, of its vertical component, and of its length, which need not be 1.
     ///
-    /// A root, since D/(σxσy) may be in range where the factors of it are not.
+    /// The root, since D/(σxσy) may be in range where its factors are not.
     #[inline(always)]
     pub(crate) fn root(&self, r2: f32, z2: f32, length2: f32) -> f32 {
         let part = self.s * r2;

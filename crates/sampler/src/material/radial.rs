@@ -1,4 +1,4 @@
-//! Isotropic distributions outside the Student-t family, from tables of their own.
+//! Isotropic distributions outside the Student-t family, each from its own tables.
 
 use alloc::format;
 use alloc::string::String;
@@ -21,9 +21,8 @@ use crate::error::MaterialError;
 
 /// A lobe of any isotropic distribution: GTR, Gauss, Schlick or a measured one.
 ///
-/// Directions are unit vectors in the tangent frame, n = +z. As for the family, one lookup inverts
-/// the CDF of the in-plane slope and one that of the slope across, which here depends on the
-/// former.
+/// Directions are unit vectors in the tangent frame, n = +z. One lookup inverts the CDF of the
+/// in-plane slope and one that of the slope across, which depends on the in-plane slope.
 #[derive(Clone, Debug)]
 pub struct Radial {
     /// σ, masking and the in-plane slope.
@@ -38,7 +37,7 @@ pub struct Radial {
     /// D^(1/4) by the half tangent of the slope.
     density: Vec<Node>,
     tilt: HalfTangent,
-    /// Its label.
+    /// The label of the distribution.
     name: String,
 }
 
@@ -137,7 +136,8 @@ impl MicrofacetDistribution for Radial {
         }
         let sigma = self.sigma();
         let r = sqrt(m.x * m.x + m.y * m.y);
-        // The half tangent of the unit slope r/(σ z): as of a view, with the two parts exchanged.
+        // The half tangent of the unit slope r/(σ z): as of a view, with the horizontal and
+        // vertical components exchanged.
         let h = self.tilt.of_view(sigma * m.z, r);
         let cells = self.density.len() - 1;
         let (cell, w) = locate(h * cells as f32, cells);
@@ -157,7 +157,7 @@ impl MicrofacetDistribution for Radial {
         self.plane.assemble(&view, x, self.sample_across(x, u[1]))
     }
 
-    /// With the tables' D and G1.
+    /// From the tables' D and G1.
     #[inline]
     fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
         visible_density(v.dot(m), self.d(m), self.plane.inverse_area(&self.plane.stretch(v)))

@@ -9,7 +9,6 @@ use crate::error::MaterialError;
 /// single precision. Albedo tables begin at its lower end.
 pub(super) const SIGMAS: [f64; 2] = [LogRoughness::BAKED.first, 1e6];
 
-/// σx and σy in single precision.
 pub(crate) fn checked(sigma: Roughness) -> Result<[f32; 2], MaterialError> {
     let [low, high] = SIGMAS.map(|end| end as f32);
     match sigma.0.into_iter().find(|sigma| !(low..=high).contains(&(*sigma as f32))) {

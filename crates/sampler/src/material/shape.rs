@@ -1,4 +1,4 @@
-//! All that the lookups of one shape read, for exports to other languages.
+//! The data that lookups of one shape read, for exports to other languages.
 
 use alloc::vec::Vec;
 
@@ -8,12 +8,12 @@ use microfacet_tables::axis::hermite::{Cell, Node};
 use super::heavy::CELLS_PER_ROW;
 use super::student_t::StudentT;
 
-/// The slices and constants of a Student-t lobe of one shape, whatever its roughness, in the form
-/// in which this crate's own lookups have them. Cells are followed by a guard, which is read at
-/// position 0 for the end itself.
+/// The slices and constants of a Student-t lobe of one shape, whatever its roughness, laid out as
+/// in this crate. Cells are followed by a guard cell, which is read at position 0 for the end of
+/// the axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShapeTables {
-    /// s and 1 − γ/2 of D, where s is never 0.
+    /// s and 1 − γ/2 of D; s > 0.
     pub normals: [f32; 2],
     /// κ of the view coordinate of masking.
     pub kappa: f32,
@@ -34,17 +34,18 @@ pub struct ShapeTables {
     pub slopes: Vec<Node>,
     /// Slopes across the plane for u > ½, as the cubic's coefficients in each cell.
     pub across: Vec<Cell>,
-    /// What closed forms draw, if not everything is in the tables.
+    /// The heavy part, which closed forms draw; `None` where the tables hold the whole
+    /// distribution.
     pub heavy: Option<HeavyTables>,
 }
 
 /// The part of the visible normals that is not in the tables.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeavyTables {
-    /// Its share of the visible area, as the cubic's coefficients in each cell of the view
-    /// coordinate of slopes.
+    /// The share of the heavy part in the visible area, as the cubic's coefficients in each cell of
+    /// the view coordinate of slopes.
     pub shares: Vec<Cell>,
-    /// How many of them lie between two views.
+    /// Cells of `shares` between two views of the slope table.
     pub cells_per_row: f32,
     /// 1/(2γ−3).
     pub exponent: f32,
@@ -53,7 +54,7 @@ pub struct HeavyTables {
 }
 
 impl ShapeTables {
-    /// Of any lobe of the shape.
+    /// The tables of the lobe's shape; its roughness does not matter.
     pub fn new(lobe: &StudentT) -> Self {
         let slices = &lobe.slices;
         let heavy = || HeavyTables {

@@ -1,4 +1,4 @@
-//! A table's γ axis collapsed at one shape, which leaves the slice that lookups read.
+//! Slices of tables: the γ axis collapsed at one shape, as lookups read them.
 
 use alloc::vec::Vec;
 
@@ -18,7 +18,6 @@ use crate::error::MaterialError;
 pub(crate) struct Slice<'a> {
     pub(crate) kind: Kind,
     pub(crate) nodes: Vec<Node>,
-    /// Axes of the table.
     pub(crate) axes: &'a [Axis],
 }
 
@@ -28,16 +27,16 @@ impl<'a> Slice<'a> {
         Self { kind: table.kind, nodes: pairs(&table.values), axes: &table.axes }
     }
 
-    /// The slice with these weights along the γ axis.
     fn at(table: &'a Table, weights: Weights) -> Self {
         let nodes = pairs(&table.collapsed(&[weights]));
         Self { kind: table.kind, nodes, axes: &table.axes }
     }
 }
 
-/// Lets both halves of a row end at one slope at u = ½, where they store 1 + h and 1 − h.
+/// Makes both halves of a row, which store 1 + h and 1 − h, end at one slope at u = ½.
 ///
-/// Rounding to 16 bits parts them by up to 1e-3, which the samples would leave out or draw twice.
+/// Rounding to 16 bits separates the ends by up to 1e-3, a gap that samples would leave out or draw
+/// twice.
 fn join(row: &mut [Node]) {
     let (low, high) = row.split_at_mut(row.len() / 2);
     let ([.., before, low], [.., beyond, high]) = (low, high) else { return };
@@ -47,8 +46,8 @@ fn join(row: &mut [Node]) {
     low[0] = 2.0 - high[0];
 }
 
-/// Spreads the first nodes of an axis where they are one number, as rounding to 16 bits makes them
-/// next to an end: all the random numbers between would draw one slope, and no density has that.
+/// Spreads the first nodes of an axis where they are equal, as rounding to 16 bits makes them next
+/// to an end: all random numbers between them would draw one slope, which no density describes.
 fn spread(nodes: &mut [Node]) {
     let Some(&[first, _]) = nodes.first() else { return };
     let Some(count) = nodes.iter().position(|node| node[0] > first) else { return };
@@ -63,11 +62,10 @@ fn pairs(values: &[f32]) -> Vec<Node> {
     values.chunks_exact(2).map(|node| [node[0], node[1]]).collect()
 }
 
-/// Slices of one shape.
 #[derive(Clone, Debug)]
 pub(crate) struct Slices {
     /// G1/q over the number of cells, by cell of the view coordinate, so that the coordinate in
-    /// cells needs no scaling of its own.
+    /// cells needs no further scaling.
     pub(crate) shadowing: Vec<Cell>,
     /// Cells of the view axis of G1.
     pub(crate) shadowing_cells: f32,
@@ -77,13 +75,13 @@ pub(crate) struct Slices {
     /// In-plane slopes: rows by view, each of `2 (cells + 1)` nodes with the half for u ≤ ½ first;
     /// then a row and a node that are read with weight 0.
     pub(crate) slope: Vec<Node>,
-    /// Cells of the view axis of slopes, its coordinate, and that in cells as lookups form it.
+    /// Cells of the view axis of slopes, its coordinate, and the coordinate in cells as lookups
+    /// compute it.
     pub(crate) rows: usize,
     pub(crate) view: HalfTangent,
     pub(crate) lines: Lines,
     /// Cells of one half of the u₁ axis.
     pub(crate) half_cells: usize,
-    /// Whether `slope` is peeled.
     pub(crate) peeled: bool,
     /// Slopes across, the half for u > ½: by node, and by cell.
     pub(crate) across: Vec<Node>,
@@ -114,7 +112,7 @@ impl Slices {
         Ok(slices)
     }
 
-    /// From the slices of G1 and of in-plane slopes alone.
+    /// From the slices of G1 and of in-plane slopes; slopes across stay empty.
     pub(crate) fn new([shadowing, slope]: [Slice; 2], s: f64) -> Self {
         let (Mapping::Rational(shadowing_view), [.., view, numbers]) =
             (shadowing.axes[shadowing.axes.len() - 1].mapping, slope.axes)
@@ -150,7 +148,6 @@ impl Slices {
         }
     }
 
-    /// Nodes of half a row of `slope`.
     #[inline(always)]
     pub(crate) fn half(&self) -> u32 {
         self.half_cells as u32 + 1
@@ -172,7 +169,7 @@ impl Slices {
         }
     }
 
-    /// The coordinate of one view in rows, to rounding as the sampler has it.
+    /// The coordinate of one view in rows, equal to the sampler's to rounding.
     #[inline(always)]
     pub(crate) fn row(&self, rho: f32, z: f32) -> f32 {
         let [rho, z, length] = [rho, z, sqrt(rho * rho + z * z)].map(f32x4::splat);
@@ -199,7 +196,6 @@ impl Slices {
         self.kappa / (self.shadowing[0][0] * self.shadowing_cells)
     }
 
-    /// Bytes that lookups of this lobe touch.
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(&self.shadowing[..])
             + size_of_val(&self.slope[..])
@@ -208,7 +204,7 @@ impl Slices {
 }
 
 /// The first table of one of `kinds` that covers s, and its weights; earlier kinds are preferred,
-/// and tables that hold s itself to those that end beside it.
+/// and tables that hold s to those that end within rounding of it.
 fn find<'a>(
     tables: &'a [Table],
     kinds: &[Kind],

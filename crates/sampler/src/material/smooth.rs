@@ -6,10 +6,10 @@ use super::distribution::MicrofacetDistribution;
 use super::key::LobeKey;
 
 /// A smooth surface, the limit σ → 0 of every lobe: all microfacets face along n, and a BSDF of it
-/// has delta events alone.
+/// has only delta events.
 ///
 /// Nothing is masked: G1 is 1 above the horizon. Densities are 0 everywhere, since that of a single
-/// normal is no number.
+/// normal is not finite.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Smooth;
 

@@ -1,10 +1,11 @@
-//! A Student-t lobe prepared from tables: σ and γ are fixed, only directions are left.
+//! A Student-t lobe of fixed σ and γ, prepared from tables.
 //!
-//! The in-plane slope x and the slope across t of visible normals are independent (see the model
-//! crate), so one lookup inverts each CDF. A table holds the distance of the slope's half tangent
-//! from an end, see [`half_tangent`](microfacet_tables::axis::half_tangent); there the silhouette is
-//! linear in the view coordinate, so no sampled normal faces away, however coarse the table. Here
-//! each lookup stands as it reads; [`lanes`](super::lanes) has those that a renderer calls.
+//! The in-plane slope x and the slope across t of visible normals are independent, so one lookup
+//! inverts each CDF. A table holds the distance of the slope's half tangent from an end, see
+//! [`half_tangent`](microfacet_tables::axis::half_tangent); there the silhouette is linear in the
+//! view coordinate, so no sampled normal faces away, however coarse the table. The lookups are
+//! written here in readable scalar code; [`lanes`](super::lanes) has the fast ones that a renderer
+//! calls.
 
 use core::f32::consts::PI;
 
@@ -31,10 +32,10 @@ use crate::error::{BatchError, MaterialError, same_lengths};
 /// A Student-t lobe with fixed roughness and shape, holding only the slices of the tables it needs.
 ///
 /// Directions are unit vectors in the tangent frame, n = +z, x and y along the principal axes of
-/// roughness. A view or light at or below the horizon has `g1` = 0 and `lambda` = ∞; sampling takes
-/// such a view at the horizon. G1 and sampled normals have the errors that the tables' certificates
-/// state; D is in closed form. Normals from samplers are of unit length to 4 ulp, lie above the
-/// horizon, and face the view to rounding (v·m > −1.2e-7).
+/// roughness. A view or light at or below the horizon has `g1` = 0 and `lambda` = ∞; sampling moves
+/// a view below the horizon to the horizon. G1 and sampled normals have the errors that the tables'
+/// certificates state; D is in closed form. Normals from samplers are of unit length to 4 ulp, lie
+/// above the horizon, and face the view to rounding (v·m > −1.2e-7).
 #[derive(Clone, Debug)]
 pub struct StudentT {
     pub(crate) sigma_x: f32,
@@ -54,30 +55,31 @@ pub struct StudentT {
 /// A direction stretched by (σx, σy, 1), with its azimuth in unit space.
 #[derive(Clone, Copy)]
 pub(crate) struct Stretched {
-    /// Direction of the horizontal part, of length `frame`; (1, 0) at normal incidence.
+    /// Direction of the horizontal component, of length `frame`; (1, 0) at normal incidence.
     pub(crate) x: f32,
     pub(crate) y: f32,
-    /// Length of (x, y): that of the horizontal part, or 1 where that is short.
+    /// Length of (x, y): that of the horizontal component, or 1 where that is short.
     pub(crate) frame: f32,
     /// Horizontal length, 0 at normal incidence.
     pub(crate) rho: f32,
-    /// Vertical part, ≥ 0.
+    /// Vertical component, ≥ 0.
     pub(crate) z: f32,
 }
 
-/// Shorter horizontal parts are taken as normal incidence: their squares, and the azimuth with
+/// Shorter horizontal components count as normal incidence: their squares, and the azimuth with
 /// them, leave the range of f32.
 pub(crate) const NORMAL_INCIDENCE: f32 = 1e-18;
 
-/// For shorter horizontal parts the azimuth is scaled to unit length: otherwise the square of a
-/// normal carrying it would leave the range of f32.
+/// For shorter horizontal components the azimuth is scaled to unit length: otherwise the square of
+/// a normal carrying it would leave the range of f32.
 pub(crate) const SHORT: f32 = 1e-6;
 
-/// The azimuth of longer ones is scaled for the same reason. No direction of unit length has one,
-/// since σ ≤ 10⁶; through the matrix of a tilted lobe, whose entries are at most 10¹⁸, it may.
+/// For longer horizontal components the azimuth is scaled, or squares would leave the range of f32.
+/// A direction of unit length has one only with the matrix of a tilted lobe, whose entries are at
+/// most 10¹⁸; otherwise σ ≤ 10⁶.
 pub(crate) const LONG: f32 = 1e9;
 
-/// The squares of longer parts leave the range of f32.
+/// The squares of longer components leave the range of f32.
 pub(crate) const LONGEST: f32 = 1e19;
 
 impl StudentT {
@@ -98,12 +100,11 @@ impl StudentT {
         Ok(Self::new(sigma, gamma, slices))
     }
 
-    /// The carrier of another distribution's tables, whose unit slopes are slopes over σ.
+    /// Holds the tables of a distribution outside the family, whose unit slopes are slopes over σ.
     pub(crate) fn for_radial(sigma: f32, slices: Slices) -> Self {
         Self::new([sigma; 2], 2.0, slices)
     }
 
-    /// With everything prepared that does not depend on a direction.
     fn new([sigma_x, sigma_y]: [f32; 2], gamma: f64, slices: Slices) -> Self {
         let s = s_of_gamma(gamma);
         Self {
@@ -137,16 +138,16 @@ impl StudentT {
         self.gamma
     }
 
-    /// Share of `u[0]`, from 0 up, that
-    /// [`sample_visible_normal`](crate::MicrofacetDistribution::sample_visible_normal) reads from
-    /// the table; the rest draws from the closed-form heavy part.
+    /// Share of `u[0]`, from 0 up, for which
+    /// [`sample_visible_normal`](crate::MicrofacetDistribution::sample_visible_normal) reads the
+    /// table; the rest draws from the closed-form heavy part.
     ///
     /// 1 where the whole distribution is tabulated.
     pub fn tabulated_share(&self, v: Vec3) -> f32 {
         if !self.slices.peeled {
             return 1.0;
         }
-        // To the bit as the sampler has it: the next number belongs to the other part.
+        // The same bits as in the sampler: the next number belongs to the heavy part.
         let at = self.view::<true>(v).at.to_array()[0];
         unit(1.0 - self.slices.heavy.share(at))
     }
@@ -171,8 +172,8 @@ impl StudentT {
         } else if (NORMAL_INCIDENCE..=LONGEST).contains(&rho) {
             Stretched { x: x / rho, y: y / rho, frame: 1.0, rho, z }
         } else {
-            // Normal incidence, straight down, NaN or too long: without z > 0 it is taken at the
-            // horizon, as every view below it, with an arbitrary azimuth.
+            // Normal incidence, straight down, NaN or too long: without z > 0 the view is moved to
+            // the horizon, as every view below it, with an arbitrary azimuth.
             let (rho, z) = if z > 0.0 { (0.0, z.max(NORMAL_INCIDENCE)) } else { (1.0, 0.0) };
             Stretched { x: 1.0, y: 0.0, frame: 1.0, rho, z }
         }
@@ -184,18 +185,18 @@ impl StudentT {
         /// Less than any area; its reciprocal times the number of cells stays finite.
         const LEAST_AREA: f32 = 1e-30;
         let slices = &self.slices;
-        // cells/(z + κρ): times z, it is the view coordinate q in cells. The sum vanishes only for
+        // cells/(z + κρ): times z, it is the view coordinate q in cells. z + κρ vanishes only for
         // the null vector and straight below the surface, where z·r is then 0 and not 0·∞.
         let r = slices.shadowing_cells / (w.z + slices.kappa * w.rho).max(LEAST_AREA);
         let at = slices.shadowing_view.of_view(w.rho, w.z, slices.kappa, r, slices.shadowing_cells);
         let (cell, w) = split(f32x4::splat(at));
-        // G1/q over the number of cells. Only NaN can leave the table.
+        // G1/q over the number of cells. The index is out of the table only for NaN.
         let cell = slices.shadowing.get(cell.to_array()[0] as u32 as usize);
         cell.map_or(0.0, |cell| horner(cell, w.to_array()[0])) * r
     }
 
-    /// D of a normal above the horizon, from it with its horizontal part divided by σ and from the
-    /// square of its length before that; `scale` is 1/(πσxσy).
+    /// D of a normal above the horizon: `m` is the normal with its horizontal component divided by
+    /// σ, `length2` the square of its length before that, `scale` is 1/(πσxσy).
     #[inline(always)]
     pub(crate) fn d_of_unit(&self, m: Vec3, length2: f32, scale: f32) -> f32 {
         let root = self.normals.root(m.x * m.x + m.y * m.y, m.z * m.z, length2);
@@ -267,7 +268,7 @@ impl StudentT {
 impl MicrofacetDistribution for StudentT {
     /// D(m), with a relative error of a few ulp times its exponent (about 1e-6 times |ln D σxσy|).
     ///
-    /// For γ < 2 it grows without limit towards the horizon and overflows to `f32::MAX`, not to ∞.
+    /// For γ < 2 D grows without limit towards the horizon and overflows to `f32::MAX`, not to ∞.
     #[inline]
     fn d(&self, m: Vec3) -> f32 {
         if !(m.z > 0.0) {
@@ -310,11 +311,11 @@ impl MicrofacetDistribution for StudentT {
         (self.sample_along(v, u), 1.0)
     }
 
-    /// The density with which the sampler draws `m`, the Jacobian of its own map.
+    /// The density with which the sampler draws `m`, the Jacobian of its map.
     ///
-    /// An estimator that divides by it is unbiased at any resolution of the tables. It is above 0
-    /// at every normal that is drawn for a view above the horizon, integrates to 1 over all m, and
-    /// costs two searches and a few square roots: use it where bias matters.
+    /// An estimator that divides by it is unbiased at any resolution of the tables. The density is
+    /// above 0 at every normal that is drawn for a view above the horizon, integrates to 1 over all
+    /// m, and costs two searches and a few square roots.
     fn table_pdf(&self, v: Vec3, m: Vec3) -> f32 {
         if is_hidden(v, m) { 0.0 } else { self.density_of_samples(v, m) }
     }

@@ -1,12 +1,12 @@
 //! The density of the normals that the table sampler draws.
 //!
 //! An estimator that divides by it is unbiased at any resolution: it is the Jacobian of the
-//! sampler's own map, found by inverting the interpolated CDFs, and not the analytic density that
-//! they approximate. It is computed in f64 from the same nodes that the sampler reads.
+//! sampler's map, found by inverting the interpolated CDFs, and not the analytic density that they
+//! approximate. It is computed in f64 from the nodes that the sampler reads.
 //!
 //! The inverse of a lookup is the random number at which the table has a slope. A row of nodes
-//! ascends. All of them are compared with a value at once, which takes less time than a search that
-//! branches on what a processor cannot predict.
+//! ascends. All nodes are compared with a value at once, which takes less time than a search whose
+//! branches are mispredicted.
 
 use alloc::vec::Vec;
 
@@ -37,7 +37,6 @@ pub(super) struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    /// One row.
     fn one(row: &'a [Node]) -> Self {
         Self { low: row, high: row, between: 0.0 }
     }
@@ -59,7 +58,7 @@ impl<'a> Rows<'a> {
             let nodes = low + f32x4::splat(self.between) * (high - low);
             count -= bytemuck::cast::<f32x4, i32x4>(nodes.simd_le(g));
         }
-        // Slopes of nodes stand in the other lanes.
+        // The other lanes hold slopes of nodes.
         let [even, _, odd, _] = count.to_array();
         let last = !low_rest.is_empty() && self.node(end - 1)[0] <= g;
         (even + odd) as usize + usize::from(last)
@@ -69,40 +68,38 @@ impl<'a> Rows<'a> {
 /// Where the interpolated inverse CDF of one half of a mirrored axis takes a value.
 struct Cell {
     cell: usize,
-    /// Reciprocal of the number of cells.
     width: f64,
     g: f64,
     nodes: [Node; 2],
 }
 
-/// The t of 2⁻⁴⁹, far less than any random number but 0 that generators of 32 bits draw. Nearer to
-/// an end is what was drawn at 0, which stands for all numbers around it, though the density of the
-/// map may vanish there.
+/// The t of u = 2⁻⁴⁹, far less than any random number but 0 that generators of 32 bits draw. Nearer
+/// to an end t is set to this: the random number 0 stands for all numbers around it, though the
+/// density of the map may vanish at 0.
 const LEAST_T: f64 = 1.0 / 4096.0;
 
-/// Coordinate in [0, 1] of a place, and the derivative of the value there.
+/// A coordinate in [0, 1], and the derivative of the value there.
 struct Place {
     t: f64,
     dg_dt: f64,
-    /// Whether it stands for places nearer to the end.
+    /// Whether it stands for coordinates nearer to the end.
     is_end: bool,
 }
 
 impl Cell {
-    /// Among the `cells + 1` ascending nodes from `first` on.
+    /// The cell of g among the `cells + 1` ascending nodes from `first` on.
     #[inline(always)]
     fn find(rows: &Rows<'_>, first: usize, cells: usize, g: f64) -> Self {
         let cell = rows.count(first, first + cells, g as f32).max(1) - 1;
         let nodes = [rows.node(first + cell), rows.node(first + cell + 1)];
-        // A sampled g may have been rounded across a node, into the cell beside its own; the halves
-        // meet at u = ½ up to the rounding of their nodes; and at the first node lies the
-        // silhouette, which rounding crosses. Outside its cell, g is a rounded sample of the
-        // nearer end.
+        // A sampled g may lie outside its cell by rounding: across a node, between the halves,
+        // which meet at u = ½ up to the rounding of their nodes, or beyond the silhouette at the
+        // first node. It is clamped to the nearer end of the cell.
         let g = g.max(f64::from(nodes[0][0])).min(f64::from(nodes[1][0]));
         Self { cell, width: 1.0 / cells as f64, g, nodes }
     }
 
-    /// The place of the value, to 1e-11.
+    /// The coordinate of the value, to 1e-11.
     #[inline(always)]
     fn place(&self) -> Place {
         let cubic = Cubic::new(self.nodes[0], self.nodes[1]);
@@ -122,8 +119,8 @@ impl Place {
 }
 
 impl StudentT {
-    /// [`table_pdf`](MicrofacetDistribution::table_pdf) of a normal that faces the view: it does
-    /// not ask, since rounding may put the slope of a drawn one behind the silhouette.
+    /// [`table_pdf`](MicrofacetDistribution::table_pdf) of a normal that faces the view. This is
+    /// not checked, since rounding may put the slope of a drawn normal behind the silhouette.
     pub(crate) fn density_of_samples(&self, v: Vec3, m: Vec3) -> f32 {
         if !(m.z > 0.0) {
             return 0.0;
@@ -153,21 +150,22 @@ impl StudentT {
         let area = norm * f64::from(self.sigma_x) * f64::from(self.sigma_y) * (cos * cos * cos);
         let density = along * across * z / area;
         let density = if density > 0.0 { density.min(f64::from(f32::MAX)) as f32 } else { 0.0 };
-        // Beyond the end of a peeled table the heavy part goes on.
+        // The heavy part extends beyond the end of a peeled table.
         let is_end = place.is_end && (half == 0 || heavy == 0.0);
         if is_end || place_across.is_end || density == 0.0 {
-            // Towards the horizon the analytic density may grow without limit, and a quotient of
-            // both would; and rounding of a normal that is tilted mostly across may lose its slope
-            // along the view.
+            // Towards the horizon the analytic density may grow without limit, and its quotient by
+            // the table's density would too; rounding of a normal that is tilted mostly across may
+            // lose its slope along the view.
             return density.max(self.visible_normal_pdf(v, m));
         }
         density
     }
 
-    /// Where the tabulated density ([`table_pdf`](MicrofacetDistribution::table_pdf)) has its joints
-    /// for a view: unit slopes x in the plane of incidence, ascending, and t ≥ 0 across it.
+    /// The slopes at which the tabulated density ([`table_pdf`](MicrofacetDistribution::table_pdf))
+    /// of a view has joints: unit slopes x in the plane of incidence, ascending, and t ≥ 0 across
+    /// it.
     ///
-    /// Between them the density of the samples is smooth, so a quadrature that respects them
+    /// Between joints the density of the samples is smooth, so a quadrature that divides there
     /// converges fast. x may end at ±∞.
     pub fn table_joints(&self, v: Vec3) -> [Vec<f64>; 2] {
         let view = self.stretch(v);
@@ -183,7 +181,7 @@ impl StudentT {
         [away.chain(towards).collect(), across.collect()]
     }
 
-    /// Up to a common factor, without a division.
+    /// The unit slopes of a normal up to a common factor, without a division.
     fn unit_slopes(&self, view: &Stretched, m: Vec3) -> UnitSlopes {
         let [vx, vy, mx, my] = [view.x, view.y, m.x, m.y].map(f64::from);
         let (sx, sy) = (f64::from(self.sigma_x), f64::from(self.sigma_y));
@@ -197,13 +195,13 @@ impl StudentT {
         let (s, two_gamma_minus_3) = (f64::from(self.s), 2.0 * self.gamma - 3.0);
         let x = (at.x / at.z).max(0.0);
         let base = 1.0 + s * x * x;
-        // The root stays in the range of f32 where the base does not.
+        // The root is in the range of f32 even where the base is not.
         let log = log2(f32x4::splat(sqrt64(base) as f32));
         let power = exp2(log * (-two_gamma_minus_3 as f32)).to_array()[0];
         two_gamma_minus_3 * s * x / base * f64::from(power)
     }
 
-    /// The coordinate of a view in rows, to rounding as the sampler has it.
+    /// The coordinate of a view in rows, equal to the sampler's to rounding.
     #[inline(always)]
     fn coordinate(&self, view: &Stretched) -> f32 {
         self.slices.row(view.rho, view.z)
@@ -226,8 +224,8 @@ impl StudentT {
         let cells = self.slices.half_cells;
         let low = ends[0];
         // The half for u ≤ ½ ends where 1 + h reaches its last node; larger slopes are looked up by
-        // 1 − h in the other half.
-        // An index, since a branch would be mispredicted as often as not.
+        // 1 − h in the other half. An index avoids a branch that would be mispredicted half of the
+        // time.
         let half = usize::from(low > f64::from(rows.node(cells)[0]));
         let g = ends[half];
         (half, Cell::find(rows, half * (cells + 1), cells, g))
@@ -248,7 +246,6 @@ impl StudentT {
         if half == 0 { u } else { 1.0 - u }
     }
 
-    /// A row of the table.
     pub(super) fn row(&self, row: usize) -> Rows<'_> {
         let stride = 2 * (self.slices.half_cells + 1);
         Rows::one(&self.slices.slope[row * stride..(row + 1) * stride])

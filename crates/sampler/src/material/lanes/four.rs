@@ -1,13 +1,13 @@
-//! The functions over slices, four directions at a time, and the one path that serves every lobe,
-//! view and number.
+//! The functions over slices, four directions at a time, and the general path, which serves every
+//! lobe, view and number.
 //!
-//! Every lane does what the [fast path](super::one) for one direction does, in the same
-//! order, so the results are the same, to the last bits of the normalisation. A batch saves by
-//! sharing: one root, division or polynomial serves four normals (18 ns become 8), and several
-//! groups of four go through each stage together, so that the processor has independent work during
-//! each wait (8 become 6). Only the table reads are made one by one. What is rare is mended in
-//! lanes too: a view straight from above, or a normal that rounding has put behind the silhouette,
-//! does not slow its three neighbours down.
+//! Every lane does what the [fast path](super::one) for one direction does, in the same order, so
+//! the results are the same, to the last bits of the normalisation. In a batch one root, division
+//! or polynomial serves four normals (18 ns become 8), and several groups of four go through each
+//! stage together, so that the processor has independent work during each wait (8 become 6). Only
+//! the table reads are made one by one. Rare cases, a view straight from above or a normal that
+//! rounding has put behind the silhouette, are handled in lanes too, so that they do not slow down
+//! the other three.
 
 use glam::Vec3;
 use wide::{bytemuck, f32x4, i32x4};
@@ -22,7 +22,6 @@ use crate::material::heavy::parts;
 use crate::material::horizon::HORIZON;
 use crate::material::student_t::StudentT;
 
-/// Directions of a group.
 pub(crate) const LANES: usize = 4;
 /// How many groups of four go through each stage together.
 const GROUPS: usize = 8;
@@ -83,7 +82,7 @@ impl StudentT {
         facing(above_horizon(normals, f32x4::ONE), v).map(|x| x.to_array()[0]).into()
     }
 
-    /// The normal visible along a stretched view, stretched by `sigma`, in all lanes.
+    /// The normals visible along stretched views, stretched by `sigma` and not normalised.
     pub(crate) fn unnormalised(&self, views: Views, u: [f32; 2], sigma: [f32; 2]) -> [f32x4; 3] {
         let at = self.locate::<true>(views, u.map(f32x4::splat));
         let slopes = self.look_up::<true>(&at);
@@ -107,7 +106,6 @@ impl StudentT {
         Located { views, silhouette, row, between, number, heavy, along, across }
     }
 
-    /// The in-plane slopes and the slopes across.
     #[inline(always)]
     fn look_up<const HEAVY: bool>(&self, at: &Located) -> Slopes {
         let slices = &self.slices;
@@ -143,13 +141,11 @@ impl StudentT {
         Slopes { x, z, t: t ^ at.across.sign(), t_z, clear, shrink }
     }
 
-    /// The normals, not normalised.
     #[inline(always)]
     fn assemble_lanes(&self, views: &Views, at: &Slopes, [sx, sy]: [f32; 2]) -> [f32x4; 3] {
         let &Slopes { x, z, t, t_z, .. } = at;
         let norm = (z * z + f32x4::splat(4.0 * self.s) * (x * x)).sqrt();
-        // In the order of the function for one direction: strong anisotropy magnifies every
-        // rounding.
+        // In the order of the code for one direction: strong anisotropy magnifies every rounding.
         let (sx, sy) = (2.0 * sx, 2.0 * sy);
         [
             x * (views.x * sx * t_z) + norm * (views.y * -sx * t),
@@ -167,7 +163,7 @@ struct Located {
     silhouette: f32x4,
     row: i32x4,
     between: f32x4,
-    /// The number along the plane within its part, and all ones where that is the heavy one.
+    /// The number along the plane within its part, and all ones where that part is the heavy one.
     number: f32x4,
     heavy: f32x4,
     along: Number,
@@ -211,7 +207,7 @@ impl Number {
     }
 }
 
-/// As [`face`](crate::material::horizon::face) for one.
+/// [`face`](crate::material::horizon::face) for four normals.
 #[inline(always)]
 fn facing(m: [f32x4; 3], [vx, vy, vz]: [f32x4; 3]) -> [f32x4; 3] {
     let vz = vz & vz.simd_gt(0.0);
@@ -220,9 +216,9 @@ fn facing(m: [f32x4; 3], [vx, vy, vz]: [f32x4; 3]) -> [f32x4; 3] {
     if !hidden.any() {
         return m;
     }
-    // A view taken at the horizon is shorter than 1, and may be almost nothing.
+    // A view moved to the horizon is shorter than 1, and may be almost 0.
     let length2 = vx * vx + vy * vy + vz * vz;
-    // Nothing is behind a view whose length is out of range.
+    // A normal counts as visible if the length of the view is out of range.
     let hidden = hidden & length2.simd_le(f32::MAX);
     let back = facing / length2.fast_max(f32x4::splat(f32::MIN_POSITIVE));
     let turned = [m[0] - back * vx, m[1] - back * vy, m[2] - back * vz];
@@ -230,10 +226,10 @@ fn facing(m: [f32x4; 3], [vx, vy, vz]: [f32x4; 3]) -> [f32x4; 3] {
     core::array::from_fn(|i| hidden.select(turned[i], m[i]))
 }
 
-/// Normalised, then with z times `shrink`, and raised to the smallest cosine where they are lower.
+/// Normalises normals, multiplies z by `shrink`, and raises z to [`HORIZON`] where it is lower.
 #[inline(always)]
 fn above_horizon([x, y, z]: [f32x4; 3], shrink: f32x4) -> [f32x4; 3] {
-    // Two divisions fewer, at the cost of a last bit.
+    // By the reciprocal: two divisions fewer, at the cost of a last bit.
     let r = 1.0 / (x * x + z * z + y * y).sqrt();
     [x * r, y * r, (z * r * shrink).fast_max(f32x4::splat(HORIZON))]
 }

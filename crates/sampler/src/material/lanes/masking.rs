@@ -1,6 +1,5 @@
-//! G1 of a lobe, of one view, of a view and a light, and of four views.
-//!
-//! Each is q times the cubic of the cell of its coordinate: a root, a division and a lookup.
+//! G1 of a lobe, of one view, of a view and a light, and of four views. G1 is q times the cubic of
+//! the cell of its coordinate: a root, a division and a lookup.
 
 use glam::Vec3;
 use wide::f32x4;
@@ -11,20 +10,18 @@ use super::four::{LANES, coefficients, transpose};
 use super::{swap_halves, swap_pairs};
 use crate::material::student_t::StudentT;
 
-/// Returns 0, the G1 of NaN; kept cold and out of line so that the common path stays short.
+/// Returns 0, the G1 of NaN; cold, so that the common path stays short.
 #[cold]
 fn g1_of_nan<T: Default>() -> T {
     T::default()
 }
 
 impl StudentT {
-    /// G1 of one view.
     #[inline(always)]
     pub(crate) fn g1_of_one(&self, v: Vec3) -> f32 {
-        // As `inverse_area`, without the azimuth that `stretch` finds, with κ folded into the
-        // roughness, and with nothing between the division and the lookup. The chain of a root, a
-        // division and a lookup is so long that the instructions of a few calls fill the
-        // processor's window, and each one less counts. Of 4.3 ns, Horner's scheme, which no
+        // As `inverse_area`, without the azimuth, and with κ folded into the roughness. The chain
+        // of a root, a division and a lookup is so long that the instructions of a few calls fill
+        // the processor's window, so every instruction counts. Of 4.3 ns, Horner's scheme, which no
         // compiler turns into shuffles, saved about 0.5, an area without a lower limit 0.2, and a
         // root of all lanes, none of which is set to zero, with NaN handled out of line, 0.3; 3.1
         // are left.
@@ -40,8 +37,8 @@ impl StudentT {
             return g1_of_nan();
         };
         let g1 = q.to_array()[0] * horner(cell, w.to_array()[0]);
-        // The null vector gives 0/0, which leaves the table where the cast does not saturate, and
-        // is cell 0 where it does.
+        // The null vector gives 0/0: an index out of the table where the cast does not saturate,
+        // and cell 0 where it does.
         if cfg!(not(target_feature = "sse2")) && g1.is_nan() {
             return 0.0;
         }
@@ -54,7 +51,7 @@ impl StudentT {
     #[inline(always)]
     pub(crate) fn g1_of_both(&self, v: Vec3, l: Vec3) -> [f32; 2] {
         let slices = &self.slices;
-        // In turns [v, l, v, l], so that no lane has to be set to zero.
+        // Lanes [v, l, v, l], so that none has to be set to zero.
         let [kx, ky] = self.kappa_sigma;
         let xy = f32x4::new([v.x, l.x, v.y, l.y]) * f32x4::new([kx, kx, ky, ky]);
         let squares = xy * xy;
@@ -72,7 +69,7 @@ impl StudentT {
         let ([wa, wb, ..], square) = (w.to_array(), w * w);
         let terms = (low + square * high) * f32x4::new([1.0, 1.0, wa, wb]);
         let [g1_v, g1_l, ..] = (q * (terms + swap_halves(terms))).fast_min(f32x4::ONE).to_array();
-        // As in `g1_of_one`.
+        // Where the cast saturates NaN reads cell 0.
         if cfg!(not(target_feature = "sse2")) && (g1_v.is_nan() || g1_l.is_nan()) {
             return g1_of_nan();
         }

@@ -1,9 +1,9 @@
 //! The lookups of a [`StudentT`](super::StudentT) in the lanes of SIMD vectors: [`masking`], a
-//! normal of [`one`] view in lanes of its parts, and of [`four`] views, a lane for each. [`views`]
-//! stretches and locates them.
+//! normal of [`one`] view with its components in lanes, and of [`four`] views, a lane for each.
+//! [`views`] stretches views and locates them in the table.
 //!
-//! Each does what the readable form in [`student_t`](super::student_t) says; tests of values and
-//! distributions hold for these.
+//! They compute the same as the readable code in [`student_t`](super::student_t); the tests of
+//! values and distributions run these.
 
 pub(crate) mod four;
 mod masking;
@@ -13,7 +13,6 @@ pub(crate) mod views;
 use glam::Vec3;
 use wide::f32x4;
 
-/// The vector of the first three lanes.
 #[inline(always)]
 pub(crate) fn first_three(m: f32x4) -> Vec3 {
     let [x, y, z, _] = m.to_array();

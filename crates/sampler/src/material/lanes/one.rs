@@ -1,5 +1,5 @@
 //! A visible normal of one view, fast for common lobes and views. An
-//! [`Ellipsoid`](crate::Ellipsoid) takes the same path from its own view to its own normal.
+//! [`Ellipsoid`](crate::Ellipsoid) uses the same code between its own view and normal.
 //!
 //! A row of the table of in-plane slopes belongs to a view, by its coordinate τ = z/(ρ + √(ρ²+z²));
 //! a node of the row holds g, the distance of a slope's half tangent from the end of its half of
@@ -10,7 +10,7 @@
 //! - Masks instead of branches for the halves of u₁ and u₂ (a random number is above ½ as often as
 //!   not, and a mispredicted branch costs as much as the lookup), and one conversion of coordinates
 //!   to cells for both numbers: a third.
-//! - Square roots side by side, none in a chain with another where the formulas allow: a tenth.
+//! - Square roots in parallel, none in a chain with another where the formulas allow: a tenth.
 //! - The test whether the normal is visible, as a lower limit on g that is known before the normal
 //!   is, instead of v·m afterwards: 4 %.
 //! - One test for all table reads, after all index arithmetic, so that the chain from the view
@@ -34,7 +34,7 @@ impl StudentT {
     /// A visible normal, by the fast path where it serves and by the general path elsewhere.
     #[inline(always)]
     pub(crate) fn sample(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
-        // Scalar arguments keep the common case in registers next to the calls of the others.
+        // Scalar arguments keep the common case in registers next to the calls of the other cases.
         if self.slices.peeled {
             return self.sample_heavy(v.x, v.y, v.z, u);
         }
@@ -42,7 +42,7 @@ impl StudentT {
         m.map_or_else(|| self.sample_general(v.x, v.y, v.z, u), first_three)
     }
 
-    /// The same, of any length where that is faster; squares of it are in range.
+    /// A visible normal of any length, where that is faster; its squares are in range.
     #[inline(always)]
     pub(crate) fn sample_along(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
         if self.slices.peeled {
@@ -52,7 +52,8 @@ impl StudentT {
         m.map_or_else(|| self.sample_general(v.x, v.y, v.z, u), |(m, _)| first_three(m))
     }
 
-    /// The same for a lobe with a heavy part, out of line so that calls of the others stay short.
+    /// [`sample`](Self::sample) of a lobe with a heavy part, out of line so that calls of other
+    /// lobes stay short.
     #[inline(never)]
     fn sample_heavy(&self, x: f32, y: f32, z: f32, u: [f32; 2]) -> Vec3 {
         let m = self.sample_fast::<true>(Vec3::new(x, y, z), u);
@@ -65,8 +66,8 @@ impl StudentT {
         self.draw::<HEAVY>(&self.view::<HEAVY>(v), u, [self.sigma_x, self.sigma_y], |m| m)
     }
 
-    /// The normal visible along a view: drawn in its space, stretched by `sigma`, then taken
-    /// through `to_tangent` and normalised.
+    /// The normal visible along a view: drawn in unit space, stretched by `sigma`, then transformed
+    /// by `to_tangent` and normalised.
     ///
     /// `None` outside the common case: normals that rounding may have put behind the silhouette,
     /// and arguments that are out of range or NaN.
@@ -85,8 +86,8 @@ impl StudentT {
         Some(if HEAVY { (m * shrink).fast_max(lowest) } else { m })
     }
 
-    /// The same before it is taken through `to_tangent` and normalised, of which squares are in
-    /// range, and what is to multiply the normal after that.
+    /// The normal of [`draw`](Self::draw) before `to_tangent`, with squares in range, and a factor
+    /// on the normal after normalisation.
     #[inline(always)]
     pub(crate) fn draw_along<const HEAVY: bool>(
         &self,
@@ -116,8 +117,8 @@ impl StudentT {
         let half: i32x4 = bytemuck::cast(towards);
         let cell = (cell + (half & i32x4::new([slices.half() as i32, 0, 0, 0]))).to_array();
 
-        // The guard cell makes every random number's cell valid, and the guard row every view's.
-        // NaN fails here or, where it converts to 0, in the test of g.
+        // The guard cell makes the cell of every random number valid, and the guard row that of
+        // every view. NaN fails here or, where it converts to 0, in the test of g.
         let stride = 2 * slices.half();
         let low = start(row, stride, cell[0]);
         let (high, across) = (low + stride as usize, cell[1] as u32 as usize);
@@ -126,8 +127,8 @@ impl StudentT {
             return None;
         }
 
-        // The slope across, as the quotient 2 t : t_z; then the factors of the in-plane slope and
-        // of its norm.
+        // The slope across, as the ratio 2 t : t_z; then the factors of the in-plane slope and of
+        // its norm.
         let g_across = f32x4::splat(cubic(&slices.across_cells[across], w[1]));
         let [t, t_z] = half_slope_at(g_across);
         let view = pairs(xy, frame);
@@ -136,12 +137,13 @@ impl StudentT {
             * f32x4::new([-2.0 * sx, 2.0 * sy, 0.0, 0.0])
             * f32x4::splat((t ^ sign).to_array()[1]);
 
-        // Half of x, then z, of the in-plane slope; the test that it is visible.
+        // Half of x, and z, of the in-plane slope, and whether the normal is visible.
         let mut shrink = f32x4::ONE;
         let (x, z, clear) = if HEAVY && let Some(number) = tail {
             let [x, z, factor] = slices.heavy.half_slopes(f32x4::splat(number));
             shrink = pairs_of_firsts(f32x4::ONE, factor);
-            // It lies on the viewer's side, and x and z are not both small.
+            // A heavy slope is on the viewer's side: the test only excludes that x and z are both
+            // small.
             (x, z, ((x + z) * t_z).to_array()[0] >= least_clear(f32x4::ZERO, t, t_z).to_array()[0])
         } else {
             let least = least_clear(!towards & silhouette, t, t_z);
@@ -154,7 +156,6 @@ impl StudentT {
         if !clear {
             return None;
         }
-        // The norm √(z² + s x²).
         let norm = (z * z + f32x4::splat(4.0 * self.s) * (x * x)).sqrt();
         Some((pairs_of_firsts(x, z) * ahead + norm * aside, shrink))
     }
@@ -162,26 +163,26 @@ impl StudentT {
 
 /// How far, in g, a normal must be from the silhouette so that no rounding can hide it.
 ///
-/// With g₀ the silhouette and t half the tangent of the tilt across, v·m = (g − g₀)(ρ + …) ρ/|m| ≥
-/// (g − g₀) ρ length/|m| stands against ten roundings of terms that sum to at most ρ length (3 + 6
-/// |t|)/|m|, whatever σ is. The margin also keeps normals off the horizon and all squares in range.
+/// With g₀ the silhouette and t half the tangent of the tilt across,
+/// v·m = (g − g₀)(ρ + …) ρ/|m| ≥ (g − g₀) ρ length/|m| must exceed ten roundings of terms that sum
+/// to at most ρ length (3 + 6 |t|)/|m|, whatever σ is. The margin also keeps normals off the
+/// horizon and all squares in range.
 const SILHOUETTE_MARGIN: f32 = 2e-6;
 /// The part of the margin that grows with |t|.
 const SILHOUETTE_MARGIN_ACROSS: f32 = 4e-6;
 
-/// From which g t_z on a normal is clear of the silhouette, for the slope across 2t : t_z.
+/// The least g t_z of a normal clear of the silhouette, for the slope across 2t : t_z.
 #[inline(always)]
 pub(crate) fn least_clear(silhouette: f32x4, t: f32x4, t_z: f32x4) -> f32x4 {
     (silhouette + SILHOUETTE_MARGIN) * t_z - t * SILHOUETTE_MARGIN_ACROSS
 }
 
-/// The index of a cell in a row, below 2³¹ so that sums with it fit; arbitrary where one was NaN.
+/// The index of a cell in a row, below 2³¹ so that sums with it fit; arbitrary for NaN.
 #[inline(always)]
 pub(crate) fn start(row: u32, stride: u32, cell: i32) -> usize {
     (row.wrapping_mul(stride).wrapping_add(cell as u32) & (u32::MAX >> 1)) as usize
 }
 
-/// The two nodes from `at` on.
 #[inline(always)]
 pub(crate) fn pair(nodes: &[Node], at: usize) -> f32x4 {
     let [a, b] = [nodes[at], nodes[at + 1]];

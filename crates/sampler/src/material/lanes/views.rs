@@ -7,10 +7,10 @@ use wide::f32x4;
 use super::swap_pairs;
 use crate::material::student_t::{LONG, LONGEST, NORMAL_INCIDENCE, SHORT, StudentT};
 
-/// 2⁴⁰: a short horizontal part times this, or a long one over it, has squares in range.
+/// 2⁴⁰: a short horizontal component times this, or a long one over it, has squares in range.
 const LIFT: f32 = 1_099_511_627_776.0;
 
-/// A stretched view in lanes: x and y in the first two of `xy`, the others in all lanes.
+/// A stretched view: x and y in the first two lanes of `xy`, the others in all lanes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
     pub(crate) xy: f32x4,
@@ -23,7 +23,7 @@ pub(crate) struct View {
     pub(crate) silhouette: f32x4,
 }
 
-/// The parts of [`Views`], of one view whose horizontal part is short or too long.
+/// The fields of [`Views`], for one view whose horizontal component is short or too long.
 #[cold]
 #[inline(never)]
 fn upright(x: f32, y: f32, z: f32) -> [f32; 6] {
@@ -33,14 +33,13 @@ fn upright(x: f32, y: f32, z: f32) -> [f32; 6] {
 }
 
 impl StudentT {
-    /// A view, stretched and located in the table.
     #[inline(always)]
     pub(crate) fn view<const HEAVY: bool>(&self, v: Vec3) -> View {
         let sigma = f32x4::new([self.sigma_x, self.sigma_y, 0.0, 0.0]);
         self.stretched::<HEAVY>(f32x4::new([v.x, v.y, 0.0, 0.0]) * sigma, v.z)
     }
 
-    /// The same of a stretched view. `HEAVY` lobes have a peeled table.
+    /// A stretched view, located in the table. `HEAVY` lobes have a peeled table.
     #[inline(always)]
     pub(crate) fn stretched<const HEAVY: bool>(&self, xy: f32x4, z: f32) -> View {
         let mut z = f32x4::splat(if z > 0.0 { z } else { 0.0 });
@@ -83,19 +82,19 @@ impl Views {
         if common.all() { views } else { views.of_any_length() }
     }
 
-    /// With a frame whose squares stay in range where the horizontal part is short or long.
+    /// With a frame whose squares stay in range where the horizontal component is short or long.
     fn of_any_length(self) -> Self {
         let Self { x, y, rho, .. } = self;
         let z = self.z.fast_min(f32x4::splat(LONGEST));
         let sunk = rho.simd_gt(LONG).select(f32x4::splat(1.0 / LIFT), f32x4::ONE);
         let lift = rho.simd_ge(SHORT).select(sunk, f32x4::splat(LIFT));
-        // Normal incidence, straight down, NaN or too long: without z > 0 the view is taken at the
+        // Normal incidence, straight down, NaN or too long: without z > 0 the view is moved to the
         // horizon, as every view below it, with an arbitrary azimuth.
         let tilted = rho.simd_ge(NORMAL_INCIDENCE) & rho.simd_le(LONGEST);
         let above = z.simd_gt(0.0);
         let rho = tilted.select(rho, above.select(f32x4::ZERO, f32x4::ONE));
         let z = tilted.select(z, above & z.fast_max(f32x4::splat(NORMAL_INCIDENCE)));
-        // Not a bit of the other views changes.
+        // The other views keep every bit.
         let common = tilted & self.length.simd_le(f32::MAX);
         let length = common.select(self.length, (rho * rho + z * z).sqrt());
         Self {

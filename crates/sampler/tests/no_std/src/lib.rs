@@ -1,5 +1,5 @@
-//! Builds only if `microfacet-sampler` without default features brings no standard library: its
-//! panic handler would clash with this one.
+//! Builds only if `microfacet-sampler` without default features does not link the standard library,
+//! whose panic handler would clash with this one.
 #![no_std]
 
 use core::alloc::{GlobalAlloc, Layout};
