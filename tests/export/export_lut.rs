@@ -11,7 +11,7 @@ use microfacet_baker::progress::Stage;
 use microfacet_export::texture::engine::{LAYOUTS, Layout};
 use microfacet_export::texture::{
     Channels, Checks, Deviation, Format, Made, Place, Shapes, Texture, TextureSpec, check, files,
-    known, shader_lines,
+    known,
 };
 use microfacet_model::{AlbedoIntegrator, Shape};
 use microfacet_sampler::Masking;
@@ -111,34 +111,6 @@ fn exact_texels_are_those_of_the_model() {
     let fitted = TextureSpec { fitted: true, ..spec.clone() };
     let [exact, fitted] = [&spec, &fitted].map(|spec| errors(spec, &made(spec))[0].largest);
     assert!(fitted < 0.7 * exact, "{fitted} of {exact}");
-}
-
-fn is_valid(spec: &TextureSpec) {
-    let kind = if spec.axes.len() == 3 { "3d" } else { "2d" };
-    let (name, line) = (&spec.name, shader_lines(spec).wgsl);
-    let source = format!(
-        "@group(0) @binding(0) var {name}_texture: texture_{kind}<f32>;\n\
-         @group(0) @binding(1) var linear_clamp: sampler;\n\
-         fn read(gamma: f32, sigma: f32, mu: f32) -> f32 {{\n{line}\nreturn 0.0;\n}}"
-    );
-    let module = naga::front::wgsl::parse_str(&source).expect(&source);
-    naga::valid::Validator::new(Default::default(), Default::default())
-        .validate(&module)
-        .expect(&source);
-}
-
-#[test]
-fn lines_of_wgsl_are_valid() {
-    for shapes in [Shapes::One(2.0), Shapes::One(f64::INFINITY), Shapes::DownTo(1.6)] {
-        for channels in [Channels::E, Channels::OneMinusE, Channels::ScaleBias] {
-            let size = if matches!(shapes, Shapes::One(_)) { &[32, 24][..] } else { &[8, 32, 24] };
-            // Keywords of the language, and variables of the line, are allowed as names.
-            for name in ["lut", "var", "sigma", "pow", "vec2f"] {
-                let specs = TextureSpec::of_shapes(name, shapes, 3.0, size, CORRELATED, channels);
-                specs.iter().for_each(is_valid);
-            }
-        }
-    }
 }
 
 #[test]

@@ -3,7 +3,10 @@
 use std::fs;
 use std::path::Path;
 
+use microfacet_export::texture::{Channels, Shapes, TextureSpec, shader_lines};
 use microfacet_sampler::{Masking, Tables};
+use naga::front::wgsl;
+use naga::valid::{Capabilities, ValidationFlags, Validator};
 use serde_json::Value;
 
 use crate::device::Gpu;
@@ -94,4 +97,42 @@ fn agrees(gpu: &Gpu, folder: &Path, name: &str) -> bool {
          what the texture ({allowed:.1e}) and the crate may err by"
     );
     worst <= 1.0
+}
+
+/// Whether the lines of all kinds of textures, by names of all kinds, are WGSL.
+pub fn lines_are_valid() -> bool {
+    let mut valid = Vec::new();
+    for shapes in [Shapes::One(2.0), Shapes::One(f64::INFINITY), Shapes::DownTo(1.6)] {
+        for channels in [Channels::E, Channels::OneMinusE, Channels::ScaleBias] {
+            let size = if matches!(shapes, Shapes::One(_)) { &[32, 24][..] } else { &[8, 32, 24] };
+            // Words of the language, and of the line itself, are names like others.
+            for name in ["lut", "var", "sigma", "pow", "vec2f"] {
+                let masking = Masking::HeightCorrelated;
+                let specs = TextureSpec::of_shapes(name, shapes, 3.0, size, masking, channels);
+                valid.extend(specs.iter().map(is_valid));
+            }
+        }
+    }
+    let good = valid.iter().filter(|valid| **valid).count();
+    println!("{good} of {} lines of WGSL that read textures are valid", valid.len());
+    good == valid.len()
+}
+
+/// Whether the line that reads a texture is WGSL; prints why not.
+fn is_valid(spec: &TextureSpec) -> bool {
+    let kind = if spec.axes.len() == 3 { "3d" } else { "2d" };
+    let (name, line) = (&spec.name, shader_lines(spec).wgsl);
+    let source = format!(
+        "@group(0) @binding(0) var {name}_texture: texture_{kind}<f32>;
+        @group(0) @binding(1) var linear_clamp: sampler;
+        fn read(gamma: f32, sigma: f32, mu: f32) -> f32 {{
+            {line}
+            return 0.0;
+        }}"
+    );
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+    let module = wgsl::parse_str(&source).map_err(|why| why.emit_to_string(&source));
+    let checked = module
+        .and_then(|module| validator.validate(&module).map_err(|why| why.emit_to_string(&source)));
+    checked.inspect_err(|why| println!("{why}")).is_ok()
 }

@@ -51,6 +51,7 @@ fn main() -> ExitCode {
     let mut lookups = Lookups::new(&gpu, &buffers, &textures);
     let mut good = agree(&mut lookups, &LIMITS, &gammas, points, reference);
     good &= sample::runs(&gpu, &buffers);
+    good &= lut::lines_are_valid();
     good &= lut::agree(&gpu, Path::new(luts));
     good &= sphere::agrees(&gpu, &buffers, Path::new(picture));
     println!("{}", if good { "Shaders agree with the crate." } else { "They differ." });

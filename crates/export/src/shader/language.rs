@@ -1,6 +1,7 @@
 //! Shading languages: what is particular to each.
 
 use super::data::LAYOUT;
+use super::for_webgl;
 
 /// A shading language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -45,6 +46,23 @@ impl Language {
             Self::Msl => ["metal", "metal"],
             Self::SpirV => ["spv", "wgsl"],
         }
+    }
+
+    /// The module, of SPIR-V the program, as `clients/gpu` translates it; none of WGSL, which it
+    /// is translated from.
+    pub(super) fn translation(self, storage: Storage) -> Option<&'static [u8]> {
+        Some(match (self, storage) {
+            (Self::Wgsl, _) => return None,
+            (Self::Glsl, Storage::Buffer) => include_bytes!("translated/buffer.glsl"),
+            (Self::Glsl, Storage::Texture) => include_bytes!("translated/texture.glsl"),
+            (Self::GlslEs, _) => for_webgl().as_bytes(),
+            (Self::Hlsl, Storage::Buffer) => include_bytes!("translated/buffer.hlsl"),
+            (Self::Hlsl, Storage::Texture) => include_bytes!("translated/texture.hlsl"),
+            (Self::Msl, Storage::Buffer) => include_bytes!("translated/buffer.metal"),
+            (Self::Msl, Storage::Texture) => include_bytes!("translated/texture.metal"),
+            (Self::SpirV, Storage::Buffer) => include_bytes!("translated/buffer.spv"),
+            (Self::SpirV, Storage::Texture) => include_bytes!("translated/texture.spv"),
+        })
     }
 
     /// A program that uses the module.

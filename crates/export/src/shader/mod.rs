@@ -1,8 +1,7 @@
-//! Shader modules: functions written once in WGSL, here, and translated.
+//! Shader modules: functions written once, in WGSL, and translated into files, which are here too.
 
 mod data;
 mod language;
-mod translate;
 
 use std::fmt::Write;
 
@@ -34,13 +33,12 @@ pub(super) fn files(language: Language, storage: Storage, shapes: &[Shape]) -> V
     let sample = language.sample(storage);
     let [of_module, of_sample] = language.extensions();
     let name = format!("{NAME}.{of_module}");
-    let contents: Vec<u8> = if language == Language::SpirV {
-        let words = translate::spirv(&format!("{module}{sample}"));
-        words.into_iter().flat_map(u32::to_le_bytes).collect()
-    } else {
-        let text = translate::text(&module, language, storage);
-        format!("{}\n{text}", head(&name, language, storage)).into()
+    let head = match language {
+        Language::SpirV => String::new(),
+        _ => format!("{}\n", head(&name, language, storage)),
     };
+    let translation = language.translation(storage).unwrap_or(module.as_bytes());
+    let contents = [head.as_bytes(), translation].concat();
     let sample = ExportFile::new(format!("{NAME}_sample.{of_sample}"), sample);
     let mut files = vec![ExportFile::new(name, contents), sample];
     data::append_files(shapes, &mut files);
@@ -48,12 +46,11 @@ pub(super) fn files(language: Language, storage: Storage, shapes: &[Shape]) -> V
 }
 
 /// The functions for WebGL 2, without the comment at the head of the file.
-pub fn for_webgl(shape: &Shape) -> String {
-    let storage = Language::GlslEs.storage(Storage::Texture);
-    translate::text(&module(&shape.lists(), storage), Language::GlslEs, storage)
+pub fn for_webgl() -> &'static str {
+    include_str!("translated/texture_es.glsl")
 }
 
-/// All text in WGSL.
+/// All text in WGSL, the same for all shapes, so that it can be translated before they are known.
 fn module([lobe, uncorrelated, correlated]: &[Vec<Member>; 3], storage: Storage) -> String {
     let tables = match storage {
         Storage::Buffer => include_str!("buffer.wgsl"),
@@ -140,10 +137,13 @@ mod tests {
     }
 
     #[test]
-    fn all_text_is_narrow() {
-        let shape = Shape::bind(&Tables::embedded(), 1.7).unwrap();
+    fn text_is_narrow_and_that_of_all_shapes() {
+        let tables = Tables::embedded();
+        let [lists, heavy, closed] =
+            [3.0, 1.7, 2.0].map(|gamma| Shape::bind(&tables, gamma).unwrap().lists());
         for storage in [Storage::Buffer, Storage::Texture] {
-            let text = module(&shape.lists(), storage);
+            let text = module(&lists, storage);
+            assert!(text == module(&heavy, storage) && text == module(&closed, storage));
             for language in [Language::Wgsl, Language::GlslEs, Language::Msl] {
                 let head = head("student_t.metal", language, storage);
                 for line in head.lines().chain(text.lines()) {

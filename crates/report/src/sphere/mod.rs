@@ -15,7 +15,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{Markup, PreEscaped, html};
 use microfacet_baker::progress::{Meter, Stage};
-use microfacet_export::{Shape, for_webgl};
+use microfacet_export::for_webgl;
 use microfacet_sampler::{BindError, Masking, Tables};
 
 use super::subjects::{Shown, Subjects};
@@ -80,8 +80,7 @@ pub(super) fn parts(
         (gallery(subjects, &pictures))
         (differences(subjects))
     };
-    let shape = Shape::bind(&tables, subjects.stops[0])?;
-    Ok(Some(Parts { body, scripts: scripts(&data, &shape) }))
+    Ok(Some(Parts { body, scripts: scripts(&data) }))
 }
 
 /// Pictures as data URLs, one for each lobe.
@@ -232,7 +231,7 @@ fn verbatim(text: &str) -> PreEscaped<&str> {
     PreEscaped(text)
 }
 
-fn scripts(data: &Data, shape: &Shape) -> Markup {
+fn scripts(data: &Data) -> Markup {
     let common =
         format!("{}{}{}", studio::constants(), random::constants(), data::albedo_coordinates());
     let scene = format!(
@@ -244,7 +243,7 @@ fn scripts(data: &Data, shape: &Shape) -> Markup {
         ),
     );
     let shaders = [
-        ("sphere-module", for_webgl(shape)),
+        ("sphere-module", for_webgl().into()),
         ("sphere-scene", scene),
         ("sphere-lobe", include_str!("lobe.frag").into()),
         ("sphere-present", include_str!("present.frag").into()),

@@ -4,24 +4,34 @@
 //! cut off again. Names that a writer makes up are made those of this module, and what the user
 //! has to bind gets its name from here.
 
+use microfacet_export::{Language, Storage};
 use naga::back::{glsl, hlsl, msl, spv};
 use naga::proc::BoundsCheckPolicies;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};
 
-use super::{Language, Storage};
-
 /// The entry point that is cut off.
 const ENTRY: &str = "student_t_impl_entry";
 
+/// A module in WGSL in another language; in SPIR-V, with a program that uses it.
+pub fn translate(module: &[u8], program: &[u8], language: Language, storage: Storage) -> Vec<u8> {
+    let [wgsl, program] = [module, program].map(|text| str::from_utf8(text).expect(OURS));
+    match language {
+        Language::SpirV => {
+            let words = spirv(&format!("{wgsl}{program}"));
+            words.into_iter().flat_map(u32::to_le_bytes).collect()
+        }
+        _ => text(wgsl, language, storage).into(),
+    }
+}
+
 /// A module of functions as text.
-pub(super) fn text(wgsl: &str, language: Language, storage: Storage) -> String {
+fn text(wgsl: &str, language: Language, storage: Storage) -> String {
     let stage =
         if language == Language::GlslEs { "fragment" } else { "compute @workgroup_size(1)" };
     let entry = format!("@{stage} fn {ENTRY}() {{ _ = student_t_impl_pair(0u); }}\n");
     let (module, info) = parse(&format!("{wgsl}\n{entry}"));
     match language {
-        Language::Wgsl => wgsl.into(),
         Language::Glsl => {
             let version = glsl::Version::Desktop(430);
             let text = glsl(&module, &info, version, ShaderStage::Compute);
@@ -40,12 +50,12 @@ pub(super) fn text(wgsl: &str, language: Language, storage: Storage) -> String {
         }
         Language::Hlsl => guarded(&bindable_hlsl(&hlsl(&module, &info))),
         Language::Msl => guarded(&includable_msl(&msl(&module, &info), storage)),
-        Language::SpirV => panic!("SPIR-V is no text"),
+        Language::Wgsl | Language::SpirV => panic!("no translation into text"),
     }
 }
 
 /// A program as SPIR-V.
-pub(super) fn spirv(wgsl: &str) -> Vec<u32> {
+fn spirv(wgsl: &str) -> Vec<u32> {
     let (module, info) = parse(wgsl);
     let flags = spv::WriterFlags::empty();
     let options = spv::Options { lang_version: (1, 3), flags, ..spv::Options::default() };
@@ -53,7 +63,7 @@ pub(super) fn spirv(wgsl: &str) -> Vec<u32> {
 }
 
 /// Why nothing here fails.
-const OURS: &str = "the module is this program's own";
+const OURS: &str = "the module is our own";
 
 fn parse(wgsl: &str) -> (Module, ModuleInfo) {
     let module =
