@@ -9,8 +9,7 @@ use proptest::prelude::*;
 use microfacet_baker::scene::{Scene, SceneError};
 
 use crate::{
-    Folder, assert_not_understood, assert_refused, assert_says, assert_warned, isotropic, load,
-    names,
+    Folder, assert_not_understood, assert_refused, assert_says, assert_warned, load, names,
 };
 
 const SCENES: [(&str, &str); 5] = [
@@ -160,16 +159,6 @@ fn devices_fifos_and_files_without_end_are_no_images() {
 }
 
 #[test]
-fn an_include_of_a_folder_is_warned_of_at_its_place() {
-    for include in ["", "."] {
-        let text = format!("WorldBegin\nInclude '{include}'\nMaterial 'conductor'\n");
-        let scene = load("a.pbrt", &text);
-        assert_warned(&scene, "a.pbrt:2:1", &["is a folder"]);
-        assert_eq!(scene.materials.len(), 1);
-    }
-}
-
-#[test]
 fn files_that_include_the_next_twice_are_refused() {
     for (extension, twice, last) in [
         ("pbrt", "Include 'NEXT'\nInclude 'NEXT'\n", ""),
@@ -270,82 +259,17 @@ fn long_chains_of_references_take_no_stack() {
     assert!(scene.materials[0].used && scene.materials.len() == 1);
 }
 
+/// Each of the next twice: a diamond, and no circle.
 #[test]
-fn bsdfs_that_hold_each_other_are_warned_of_at_their_place() {
-    let bsdf = |id: &str, class: &str, inner: &str| {
-        format!("<bsdf type='{class}' id='{id}'><ref id='{inner}'/></bsdf>\n")
-    };
-    let nested = "<bsdf type='blendbsdf' id='a'><bsdf type='roughconductor'/>\
-                  <bsdf type='twosided'>\n<ref id='a'/></bsdf></bsdf>";
-    for (text, place, circle) in [
-        (bsdf("a", "twosided", "a"), ":2:30", "circle: a -> a"),
-        (bsdf("a", "mask", "b") + &bsdf("b", "bumpmap", "a"), ":3:29", "circle: a -> b -> a"),
-        (nested.to_owned(), ":3:1", "circle: a -> a"),
-        (bsdf("x", "mask", "a") + "<alias id='x' as='a'/>", ":2:26", "circle: a -> a"),
-    ] {
-        for shape in ["", "<shape type='cube'><ref id='a'/></shape>"] {
-            let text = format!("<scene version='3.0.0'>\n{text}{shape}</scene>");
-            assert_warned(&load("a.xml", &text), place, &[circle]);
-        }
-    }
-}
-
-#[test]
-fn mixtures_of_each_other_are_warned_of_at_their_place() {
-    let mix = |name: &str, parts: &str| {
-        format!("MakeNamedMaterial '{name}' 'string type' 'mix' 'string materials' [ {parts} ]\n")
-    };
-    let metal = "MakeNamedMaterial 'metal' 'string type' 'conductor'\n";
-    for last in ["", "Material 'mix' 'string materials' [ 'a' 'b' ]\nShape 'sphere'\n"] {
-        for (a, b, circle) in [
-            ("'metal' 'a'", "'metal' 'metal'", "circle: a -> a"),
-            ("'b' 'metal'", "'metal' 'a'", "circle: a -> b -> a"),
-        ] {
-            let scene = load("a.pbrt", &(metal.to_owned() + &mix("a", a) + &mix("b", b) + last));
-            assert_warned(&scene, ":2:1", &[circle]);
-            assert_eq!(names(&scene), ["metal"]);
-        }
-    }
-    // Each of the next twice: a diamond, and no circle.
-    let chain = many(64, |i| mix(&format!("m{i}"), &format!("'m{0}' 'm{0}'", i + 1)));
-    let end = metal.replace("metal", "m64");
-    assert_eq!(names(&load("a.pbrt", &(chain + &end))), ["m64"]);
-}
-
-#[test]
-fn nodes_of_shaders_and_values_in_a_circle_are_warned_of() {
-    let document = |text: &str| format!("<materialx version='1.39'>\n{text}</materialx>");
-    let mix = |name: &str, of: &str| {
+fn mixtures_of_one_mixture_twice_are_followed_once() {
+    let mix = |i: usize| {
+        let next = i + 1;
         format!(
-            "<mix name='{name}' type='surfaceshader'><input name='fg' nodename='{of}'/>\
-             <input name='mix' value='1'/></mix>\n"
+            "MakeNamedMaterial 'm{i}' 'string type' 'mix' 'string materials' [ 'm{next}' 'm{next}' ]\n"
         )
     };
-    // Through a graph and its interface.
-    let through = "<dot name='n'><input name='in' nodegraph='g'/></dot>\
-         <nodegraph name='g'><input name='i' nodename='n'/>\
-         <dot name='m'><input name='in' interfacename='i'/></dot>\
-         <output name='o' nodename='m'/></nodegraph>";
-    for (text, circle) in [
-        (mix("a", "b") + &mix("b", "a"), "a -> b -> a"),
-        (mix("a", "a"), "a -> a"),
-        (through.to_owned(), "n -> o -> m -> i -> n"),
-    ] {
-        let scene = load("a.mtlx", &document(&text));
-        let start = format!("a.mtlx:2:1: nodes are connected in a circle: {circle};");
-        assert_says(&scene.warnings[0], &[&start]);
-        assert!(scene.materials.is_empty() && scene.ignored.iter().all(|one| !one.understood));
-    }
-    // A graph twice in a chain, by different outputs, is no circle.
-    let twice = document(
-        "<nodegraph name='g'><input name='i' nodename='n'/><output name='o' interfacename='i'/>\
-         <constant name='c'><input name='value' value='0.5'/></constant>\
-         <output name='p' nodename='c'/></nodegraph>\
-         <dot name='n'><input name='in' nodegraph='g' output='p'/></dot>\
-         <standard_surface name='s' type='surfaceshader'>\
-         <input name='specular_roughness' nodegraph='g' output='o'/></standard_surface>",
-    );
-    assert_eq!(load("a.mtlx", &twice).materials[0].lobe.roughness, isotropic(0.25));
+    let end = "MakeNamedMaterial 'm64' 'string type' 'conductor'\n";
+    assert_eq!(names(&load("a.pbrt", &(many(64, mix) + end))), ["m64"]);
 }
 
 #[test]
