@@ -3,8 +3,8 @@
 //! A transcript is a text file beside the tests. Of its lines,
 //!
 //! - `# WORDS` is a heading: what follows begins in a new, empty folder;
-//! - `-- NAME --` begins a file of that folder, up to the next such line or command; the end of its
-//!   last line is not part of it;
+//! - `-- NAME --` begins a file of that folder, up to the next such line or command, but for the
+//!   end of its last line; `-- NAME/ --` is a folder;
 //! - `$ LINE` is a command line, without quotes;
 //! - `> `, `! ` and `? ` begin what it answered: standard output, standard error, and the exit
 //!   status if that is not 0.
@@ -47,8 +47,11 @@ fn replayed(text: &str, answer: impl Fn(&Path, &str) -> String) -> String {
                 content.push(line);
             }
             let path = folder.path().join(name);
-            fs::create_dir_all(path.parent().unwrap()).unwrap();
-            fs::write(path, content.join("\n")).unwrap();
+            fs::create_dir_all(if name.ends_with('/') { &path } else { path.parent().unwrap() })
+                .unwrap();
+            if !name.ends_with('/') {
+                fs::write(path, content.join("\n")).unwrap();
+            }
             content.iter().for_each(|line| told += &format!("{line}\n"));
         } else if let Some(command) = line.strip_prefix("$ ") {
             told += &answer(folder.path(), command);
