@@ -34,16 +34,21 @@ fn timeless(line: &str) -> String {
     words.join(" ").replace("TIME ", "TIME").replace(version, "microfacet-bake VERSION")
 }
 
+/// Paths of what is in a folder, but for what is in the cache.
+fn files(folder: &Path) -> String {
+    let entries = walkdir::WalkDir::new(folder).min_depth(1).sort_by_file_name();
+    let outside = |entry: &walkdir::DirEntry| !entry.path().parent().unwrap().ends_with("home");
+    let path = |entry: walkdir::DirEntry| {
+        let end = if entry.file_type().is_dir() { "/" } else { "" };
+        format!("{}{end}\n", entry.path().strip_prefix(folder).unwrap().display())
+    };
+    entries.into_iter().filter_entry(outside).map(|entry| path(entry.unwrap())).collect()
+}
+
 /// What a command line answers; `files` lists what is in the folder.
 fn answer(folder: &Path, line: &str) -> String {
     if line == "files" {
-        let files = walkdir::WalkDir::new(folder).sort_by_file_name().into_iter();
-        let paths = files.filter_map(Result::ok).filter(|it| it.file_type().is_file());
-        let names: String = paths
-            .map(|it| format!("{}\n", it.path().strip_prefix(folder).unwrap().display()))
-            .filter(|name| !name.starts_with("home"))
-            .collect();
-        return marked('>', &names);
+        return marked('>', &files(folder));
     }
     // Estimates of time are for one thread.
     let output = command(folder, &words(line)).env("RAYON_NUM_THREADS", "1").output().unwrap();

@@ -136,8 +136,8 @@ fn forge(from: &str, to: &str) -> Vec<u8> {
     forged
 }
 
-/// A lie is two lines of a text: what stands in the header, and what is put in its place. The words by
-/// which the file is refused stand below; `SNAPSHOTS=overwrite cargo test` writes them anew.
+/// A lie is two lines of a text: what stands in the header, and what is put in its place. The words
+/// that refuse the file stand below; `SNAPSHOTS=overwrite cargo test` writes them anew.
 #[test]
 fn lying_headers_and_descriptions_are_refused_by_name() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/lies.txt");
