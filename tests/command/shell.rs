@@ -3,7 +3,7 @@
 use std::fs;
 use std::process::{Command, Stdio};
 
-use crate::common::{Desk, PROGRAM, has, lacks, material};
+use crate::common::{Desk, PROGRAM, has, lacks, material, names};
 
 #[test]
 fn every_shell_has_completions_of_every_subcommand() {
@@ -12,7 +12,6 @@ fn every_shell_has_completions_of_every_subcommand() {
         let script = desk.ok(&format!("completions {shell}"));
         has(&script, &["bake", "validate", "furnace", "max-error", "perturb-gamma"]);
     }
-    desk.refuses("completions cobol", &["zsh"]);
     // They exist to be refused.
     lacks(&desk.ok("completions bash"), &["--roughness ", "--alpha ", "--gamma-max "]);
 }
@@ -54,25 +53,13 @@ fn the_manual_has_a_page_of_every_subcommand() {
         let page = desk.read(&format!("man1/microfacet-bake-{page}.1"));
         has(&String::from_utf8(page).unwrap(), &[option]);
     }
-    desk.refuses("man --out nowhere", &["nowhere"]);
+    // Of each there is a help page too.
+    let helps = include_str!("help.txt").lines().filter(|line| line.ends_with(" --help"));
+    assert_eq!(names(&desk.join("man1")).len(), helps.filter(|line| line.starts_with('$')).count());
 }
 
 fn glass() -> Desk {
     Desk::new(&[("glass.toml", &material("glass", "sigma = 0.454\ngamma = 3.0"))])
-}
-
-#[test]
-fn quiet_leaves_results_and_errors() {
-    let desk = glass();
-    let said = desk.run("bake glass.toml --out out --quiet").ends(0);
-    assert_eq!((&said.out[..], &said.err[..]), ("", ""));
-    let few = "validate out -q --configurations 2";
-    assert_eq!(desk.ok(&format!("{few} --samples 1e4")), "PASSED\n");
-    assert_eq!(desk.run(&format!("{few} --perturb-gamma 1.5")).ends(1).out, "REJECTED\n");
-    // What was asked for is no summary.
-    has(&desk.ok("inspect out -q"), &["glass"]);
-    has(&desk.ok("plan glass.toml -q"), &["glass"]);
-    desk.refuses("bake missing.toml --out o -q", &["missing.toml"]);
 }
 
 #[test]

@@ -11,10 +11,16 @@ use tempfile::TempDir;
 
 pub(crate) const PROGRAM: &str = env!("CARGO_BIN_EXE_microfacet-bake");
 
-pub(crate) fn run(folder: &Path, args: &[&str]) -> Output {
+/// The program in a folder, whose help is as wide as a terminal of 100 columns.
+pub(crate) fn command(folder: &Path, args: &[&str]) -> Command {
     let mut command = Command::new(PROGRAM);
-    command.env("XDG_CACHE_HOME", folder.join("home")).args(args).current_dir(folder);
-    command.output().unwrap()
+    command.env("XDG_CACHE_HOME", folder.join("home")).env("COLUMNS", "100");
+    command.args(args).current_dir(folder);
+    command
+}
+
+pub(crate) fn run(folder: &Path, args: &[&str]) -> Output {
+    command(folder, args).output().unwrap()
 }
 
 /// Standard output of a run that must succeed.

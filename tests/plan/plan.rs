@@ -483,21 +483,6 @@ fn the_command_says_what_it_did_not_do() {
 }
 
 #[test]
-fn budgets_that_cannot_be_met_are_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = folder.path();
-    std::fs::write(at.join("r.toml"), recipe(&MIXED[..1])).unwrap();
-    let with =
-        |more: &[&str]| refused(at, &[&["bake", "r.toml", "--out", "out"][..], more].concat());
-    assert!(with(&["--max-error", "0"]).contains("(0, 0.1]"));
-    assert!(with(&["--max-error", "nan"]).contains("(0, 0.1]"));
-    assert!(with(&["--max-error", "1e-3", "--quality", "high"]).contains("--quality"));
-    assert!(with(&["--max-bytes", "100"]).contains("100 bytes"));
-    assert!(with(&["--embedded", "--max-error", "1e-6"]).contains("compiled in"));
-    assert!(refused(at, &["plan", "absent.toml"]).contains("absent.toml"));
-}
-
-#[test]
 fn a_refused_bake_leaves_no_folder_behind() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();

@@ -110,23 +110,6 @@ fn a_single_configuration_is_not_rejected_by_chance() {
     has(&wrong.out, &["other seeds (--seed)"]);
 }
 
-#[test]
-fn half_of_pi_may_be_typed() {
-    let desk = Desk::new(&[]);
-    for (theta, code) in [
-        ("1.5708", 0),
-        ("1.570796", 0),
-        ("1.5707963267948966", 0),
-        ("0", 0),
-        ("1.58", 2),
-        ("-0.1", 2),
-        ("nan", 2),
-    ] {
-        let line = "validate --sigma 0.3 --gamma 3 --samples 20000 --theta";
-        desk.run(&format!("{line} {theta}")).ends(code);
-    }
-}
-
 /// What a set states is what it is judged by: coarse nodes and 16 bits are no faults, wrong values
 /// are.
 #[test]

@@ -293,15 +293,3 @@ fn where_no_threads_can_be_started_one_does_the_work() {
         }
     }
 }
-
-#[test]
-fn more_memory_than_allowed_is_refused_with_the_estimate() {
-    let workshop = workshop();
-    let wide = material("any", "sigma = 0.3\ngamma = { min = 1.501, max = \"inf\" }");
-    workshop.write("wide.toml", wide);
-    let parts = ["values would take about", "more than the 1 MiB allowed"];
-    workshop.refuses("bake wide.toml --out out --max-memory 1M", &parts);
-    assert!(!workshop.join("out").exists());
-    let sizes = "such as 65536, 10K (10,000), 4GB or 4GiB";
-    workshop.refuses("bake old.toml --out out --max-memory 512X", &[sizes]);
-}

@@ -7,15 +7,19 @@ mod mitsuba;
 mod pbrt;
 mod places;
 mod recipe;
+#[path = "../common/transcript.rs"]
+mod transcript;
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use image::{DynamicImage, ImageFormat, Rgb, RgbImage};
 use tempfile::TempDir;
 
 use microfacet_baker::scene::{Material, Roughness, Scene, SceneError, SceneErrorKind};
 use microfacet_tables::Interval;
+
+use transcript::{marked, replay};
 
 /// A folder with a scene in it.
 struct Folder(TempDir);
@@ -156,5 +160,36 @@ fn a_missing_scene_is_an_error_of_input_and_output() {
         let error = Folder::new::<&str>(&[]).load(name).unwrap_err();
         assert!(matches!(error.kind, SceneErrorKind::Io(_)), "{error}");
         assert!(error.to_string().contains(name), "{error}");
+    }
+}
+
+/// What a scene gives, line by line: materials, what has no lobe, files that it includes, and
+/// warnings; or why it is refused.
+fn answer(folder: &Path, line: &str) -> String {
+    let folder = folder.canonicalize().unwrap();
+    let name = line.strip_prefix("load ").unwrap();
+    let said = match microfacet_scene::load(&folder.join(name)) {
+        Err(why) => marked('!', &why.to_string()),
+        Ok(scene) => {
+            let materials = scene.materials.iter().map(|material| {
+                let used = if material.used { "" } else { "not used: " };
+                let lobe = material.origin.lobe.map_or(String::new(), |lobe| format!("{lobe}: "));
+                let entry = serde_json::to_string(&material.entry()).unwrap();
+                format!("{}: {used}{lobe}{entry}\n", material.origin.place)
+            });
+            let ignored = scene.ignored.iter().map(|ignored| format!("{ignored}\n"));
+            let included = scene.included.iter().map(|it| format!("includes {}\n", it.display()));
+            let found: String = materials.chain(ignored).chain(included).collect();
+            marked('>', &found) + &marked('!', &scene.warnings.join("\n"))
+        }
+    };
+    said.replace(&format!("{}/", folder.display()), "")
+}
+
+/// Small scenes that are refused, or not understood as a whole.
+#[test]
+fn scenes_are_read_as_their_transcripts_say() {
+    for format in ["recipe", "pbrt", "mitsuba", "gltf", "materialx"] {
+        replay(&format!("scene/{format}"), answer);
     }
 }

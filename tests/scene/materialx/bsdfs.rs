@@ -3,7 +3,7 @@
 use microfacet_baker::scene::{Reflectance, Scene};
 use microfacet_tables::Interval;
 
-use super::{document, node, not_understood};
+use super::{document, node};
 use crate::{Folder, anisotropic, assert_close, isotropic, load, names, png};
 
 /// A surface whose BSDF is the node "end".
@@ -132,69 +132,10 @@ fn lobes_are_found_through_layers_and_mixtures() {
 
     let fabric = end("layer", &[("top", "nodename='cloth'"), ("base", metal)]);
     assert_eq!((names(&fabric), &fabric.ignored[0].name[..]), (vec!["a"], "a.sheen"));
-    // A film changes the Fresnel term of the BSDF under it.
+    // A film changes what it lies on.
     let film = bsdf("thin_film_bsdf", "film", &[])
         + &bsdf("layer", "end", &[("top", "nodename='film'"), ("base", coat)]);
     assert_eq!(of(&film).materials[0].fresnel, None);
-}
-
-#[test]
-fn what_has_no_microfacets_is_understood() {
-    for (class, reason) in [
-        ("oren_nayar_diffuse_bsdf", "diffuse"),
-        ("burley_diffuse_bsdf", "diffuse"),
-        ("translucent_bsdf", "diffuse"),
-        ("subsurface_bsdf", "diffuse"),
-        ("sheen_bsdf", "fabric"),
-        ("chiang_hair_bsdf", "fibre"),
-    ] {
-        let scene = one(class, &[]);
-        let [ignored] = &scene.ignored[..] else { panic!("{class}: {:?}", scene.ignored) };
-        assert!(ignored.understood && ignored.reason.contains(reason), "{ignored}");
-        assert_eq!((&ignored.name[..], scene.materials.len()), ("a", 0));
-    }
-}
-
-#[test]
-fn a_bsdf_that_is_not_understood_leaves_the_others() {
-    let layered = |base: &str| {
-        let layer = bsdf("layer", "end", &[("top", "nodename='t'"), ("base", "nodename='b'")]);
-        load("a.mtlx", &surface(&(bsdf("dielectric_bsdf", "t", &[]) + base + &layer)))
-    };
-    for base in [
-        bsdf("LamaSSS", "b", &[]),
-        bsdf("conductor_bsdf", "b", &[("distribution", "gtr1")]),
-        bsdf("conductor_bsdf", "b", &[("roughness", "x")]),
-    ] {
-        let scene = layered(&base);
-        assert_eq!(names(&scene), ["a"]);
-        let [ignored] = &scene.ignored[..] else { panic!("{:?}", scene.ignored) };
-        assert!(ignored.name == "a.b" && !ignored.understood, "{ignored}");
-    }
-    not_understood("<LamaX name='a' type='surfaceshader'/>", &["neither a node"]);
-}
-
-#[test]
-fn a_broken_branch_leaves_the_others() {
-    let metal = bsdf("conductor_bsdf", "metal", &[]);
-    let broken = |class: &str, inputs: &[(&str, &str)], kept: &[&str], why: &str| {
-        let scene = load("a.mtlx", &surface(&(metal.clone() + &bsdf(class, "end", inputs))));
-        assert_eq!(names(&scene), kept);
-        let name = if kept.is_empty() { "a" } else { "a.end" };
-        let [ignored] = &scene.ignored[..] else { panic!("{:?}", scene.ignored) };
-        assert!(ignored.name == name && !ignored.understood, "{ignored}");
-        assert!(ignored.reason.contains(why), "{ignored}");
-    };
-    let (metal, absent) = ("nodename='metal'", "nodename='absent'");
-    let half = ("mix", "0.5");
-    broken("mix", &[("fg", metal), ("bg", absent), half], &["a"], "no node \"absent\"");
-    broken("mix", &[("fg", absent), ("bg", metal), half], &["a"], "no node \"absent\"");
-    broken("add", &[("in1", absent), ("in2", metal)], &["a"], "no node \"absent\"");
-    broken("layer", &[("top", absent), ("base", metal)], &["a"], "no node \"absent\"");
-    let itself = "nodename='end'";
-    broken("mix", &[("fg", metal), ("bg", itself), half], &[], "connected to itself");
-    broken("mix", &[("fg", metal), ("bg", metal), ("mix", "x")], &[], "number");
-    broken("multiply", &[("in1", metal), ("in2", "")], &[], "number");
 }
 
 /// A node that the document defines by a graph, which has an interface.
@@ -233,23 +174,7 @@ fn nodes_are_followed_into_the_graphs_that_define_them() {
     assert_close(scene.materials[0].lobe.roughness, [0.16; 2], [0.16; 2]);
 }
 
-#[test]
-fn a_node_that_is_a_part_of_itself_ends() {
-    let itself = DEFINED.replace(
-        "<surface name='s' type='surfaceshader'><input name='bsdf' nodename='d'/></surface>",
-        "<paint name='s' type='surfaceshader'/>",
-    );
-    not_understood(
-        &format!("{itself}<paint name='a' type='surfaceshader'/>"),
-        &["a part of itself"],
-    );
-    let layer = bsdf("layer", "end", &[("top", "nodename='end'"), ("base", "nodename='end'")]);
-    let scene = load("a.mtlx", &surface(&layer));
-    assert!(scene.warnings[0].contains("circle: end -> end"));
-    assert!(scene.ignored[0].reason.contains("connected to itself"), "{}", scene.ignored[0]);
-}
-
-/// Each of many layers has the next one twice: without a memory that takes exponential time.
+/// Each of many layers has the next twice; without care that takes forever.
 #[test]
 fn shared_and_deep_graphs_are_followed_once() {
     let layer = |i: usize, next: &str| {

@@ -9,9 +9,7 @@ use std::fs;
 use microfacet_baker::scene::{Format, Reflectance, Roughness, Scene};
 use microfacet_tables::Interval;
 
-use crate::{
-    Folder, anisotropic, assert_close, assert_refused, assert_says, isotropic, load, names, png,
-};
+use crate::{Folder, anisotropic, assert_close, assert_says, load, names, png};
 
 fn document(content: &str) -> String {
     format!("<materialx version='1.39'>{content}</materialx>")
@@ -125,33 +123,6 @@ fn open_pbr_surface_follows_its_definition() {
     assert_eq!(coated.ignored[0].name, "a.fuzz_weight");
 }
 
-#[test]
-fn materials_name_shaders_and_looks_use_them() {
-    let text = document(
-        "<standard_surface name='SR_gold' type='surfaceshader'/>
-        <open_pbr_surface name='SR_shared' type='surfaceshader'/>
-        <gltf_pbr name='SR_other' type='surfaceshader'/>
-        <surfacematerial name='gold'><input name='surfaceshader' nodename='SR_gold'/></surfacematerial>
-        <surfacematerial name='one'><input name='surfaceshader' nodename='SR_shared'/></surfacematerial>
-        <surfacematerial name='two'><input name='surfaceshader' nodename='SR_shared'/></surfacematerial>
-        <nodegraph name='NG_definition' nodedef='ND_x'>
-            <standard_surface name='inner' type='surfaceshader'/>
-        </nodegraph>
-        <look name='L'><materialassign name='m' material='two' geom='*'/></look>",
-    );
-    let scene = load("a.mtlx", &text);
-    let used: Vec<_> = scene.materials.iter().map(|m| (&m.name[..], m.used)).collect();
-    assert_eq!(used, [("gold", false), ("one", false), ("two", true), ("SR_other", false)]);
-
-    let without_look = text.replace("materialassign", "other");
-    assert!(load("a.mtlx", &without_look).materials.iter().all(|m| m.used));
-
-    let old = "<material name='m'><shaderref name='s' node='standard_surface'/></material>";
-    let old = load("a.mtlx", &document(old));
-    let [ignored] = &old.ignored[..] else { panic!("{:?}", old.ignored) };
-    assert!(ignored.reason.contains("before 1.38; upgrade") && !ignored.understood);
-}
-
 /// A shader whose roughness comes from the output "o" of a graph.
 fn graph(nodes: &str) -> String {
     document(&format!(
@@ -203,135 +174,6 @@ fn node_graphs_are_followed() {
 }
 
 #[test]
-fn what_a_graph_does_otherwise_is_the_full_range() {
-    for (class, inputs, part) in [
-        ("fractal3d", &[][..], "fractal3d"),
-        ("image", &[("file", "absent.png")], "absent.png"),
-        ("image", &[], "names no file"),
-    ] {
-        let scene = load("a.mtlx", &graph(&node(class, "end", "float", inputs)));
-        assert_eq!(scene.materials[0].lobe.roughness, Roughness::Isotropic(Interval::UNIT));
-        assert_says(&scene.warnings[0], &[part]);
-    }
-}
-
-#[test]
-fn included_documents_belong_to_the_scene() {
-    let include = |name: &str| {
-        format!(
-            "<materialx version='1.39' xmlns:xi='http://www.w3.org/2001/XInclude'>\n\
-             <xi:include href='{name}'/></materialx>"
-        )
-    };
-    let shader = document("<open_pbr_surface name='b' type='surfaceshader'/>");
-    let folder = Folder::new(&[("a.mtlx", include("b.mtlx")), ("b.mtlx", shader)]);
-    assert_eq!(names(&folder.load("a.mtlx").unwrap()), ["b"]);
-
-    let missing = load("a.mtlx", &include("b.mtlx"));
-    assert_says(&missing.warnings[0], &["a.mtlx:2:1: b.mtlx is missing"]);
-
-    let circle = Folder::new(&[("a.mtlx", include("a.mtlx"))]);
-    assert_says(&circle.load("a.mtlx").unwrap_err().to_string(), &["a.mtlx -> a.mtlx"]);
-}
-
-#[test]
-fn values_out_of_range_are_moved_and_warned_of() {
-    let scene = shader("standard_surface", &[("specular_roughness", 1.5), ("metalness", -1.0)]);
-    assert_eq!(scene.materials[0].lobe.roughness, isotropic(1.0));
-    assert_eq!(scene.warnings.len(), 2);
-    assert_says(&scene.warnings[0], &["specular_roughness is 1.5, outside [0, 1]"]);
-}
-
-#[test]
-fn documents_of_another_grammar_are_refused() {
-    assert_refused("a.mtlx", "<scene/>", ":1:1", &["<scene>", "<materialx>"]);
-    assert_refused("a.mtlx", "<materialx>\n<a></materialx>", ":2:4", &["a"]);
-}
-
-/// The reason why the material "a" of a document is not understood, and that "b" still is.
-#[track_caller]
-fn not_understood(text: &str, parts: &[&str]) {
-    let sound = "<gltf_pbr name='b' type='surfaceshader'/>";
-    let scene = load("a.mtlx", &document(&format!("{text}{sound}")));
-    assert_eq!(names(&scene), ["b"]);
-    let [ignored] = &scene.ignored[..] else { panic!("{:?}", scene.ignored) };
-    assert!(ignored.name == "a" && !ignored.understood, "{ignored}");
-    assert_says(&ignored.reason, parts);
-}
-
-#[test]
-fn a_broken_material_is_named_at_its_place_and_the_others_are_read() {
-    for (said, parts) in [
-        ("x", ["a.mtlx:2:1: specular_roughness", "number, not 'x'"]),
-        ("nodename='n'", [":2:1", "no node 'n'"]),
-        ("nodegraph='g'", [":2:1", "no nodegraph 'g'"]),
-        ("interfacename='i'", [":2:1", "no interface 'i'"]),
-    ] {
-        let inputs = [("specular_roughness", said)];
-        let text = node("open_pbr_surface", "a", "surfaceshader", &inputs);
-        not_understood(&text.replace("<input", "\n<input"), &parts);
-    }
-    // A failure in one material does not change the error of another.
-    let twice = "<dot name='n'><input name='in' value='x'/></dot>\
-        <surfacematerial name='a'><input name='surfaceshader' nodename='s'/></surfacematerial>\
-        <surfacematerial name='b'><input name='surfaceshader' nodename='s'/></surfacematerial>\
-        <gltf_pbr name='s' type='surfaceshader'><input name='roughness' nodename='n'/></gltf_pbr>";
-    let scene = load("a.mtlx", &document(twice));
-    assert_eq!(scene.ignored.len(), 2);
-    assert!(scene.ignored.iter().all(|one| one.reason.contains("must be a number")), "{scene:?}");
-}
-
-#[test]
-fn nodes_in_a_circle_are_warned_of() {
-    let circle = graph("\n<dot name='end'><input name='in' nodename='end'/></dot>");
-    let scene = load("a.mtlx", &circle);
-    let warning = "a.mtlx:2:1: nodes are connected in a circle: end -> end";
-    assert_says(&scene.warnings[0], &[warning]);
-    assert_says(&scene.ignored[0].reason, &["depends on itself"]);
-}
-
-#[test]
-fn a_broken_lobe_leaves_the_others() {
-    let rough = |class: &str, inputs: &[(&str, &str)], kept: &[&str], lobe: &str| {
-        let scene = coloured(class, inputs);
-        assert_eq!(names(&scene), kept, "{class}");
-        let [ignored] = &scene.ignored[..] else { panic!("{class}: {:?}", scene.ignored) };
-        assert!(ignored.name == lobe && !ignored.understood, "{ignored}");
-        assert_says(&ignored.reason, &["must be a number"]);
-    };
-    let (standard, clear) = ("standard_surface", "clearcoat");
-    for (class, roughness, coat, of_coat) in [
-        ("open_pbr_surface", "specular_roughness", "coat_weight", "coat_roughness_anisotropy"),
-        (standard, "specular_roughness", "coat", "coat_anisotropy"),
-        ("gltf_pbr", "roughness", clear, "clearcoat_roughness"),
-        ("UsdPreviewSurface", "roughness", clear, "clearcoatRoughness"),
-        ("disney_principled", "roughness", clear, "clearcoatGloss"),
-    ] {
-        let coated = if coat == clear { "a.clearcoat" } else { "a.coat" };
-        for bad in ["nan", ""] {
-            rough(class, &[(roughness, bad), (coat, "1")], &[coated], "a");
-            rough(class, &[(of_coat, bad), (coat, "1")], &["a"], coated);
-        }
-        // A coat of unknown weight may exist, and the base under it depends on that.
-        if coat == clear {
-            rough(class, &[(coat, "x")], &["a"], coated);
-        }
-        // A lobe without weight is not evaluated.
-        let unused = shader(class, &[(of_coat, f64::NAN)]);
-        assert_eq!((names(&unused), unused.ignored.len()), (vec!["a"], 0), "{class}");
-    }
-    rough(standard, &[("sheen", "x")], &["a"], "a.sheen");
-    // The base depends on the coat's roughness only where that affects it.
-    let coat = [("coat", "1"), ("coat_roughness", "x")];
-    rough(standard, &coat, &["a"], "a.coat");
-    rough(standard, &[&coat[..], &[("coat_affect_roughness", "1")]].concat(), &[], "a");
-    // Both the reflection and the transmission.
-    let glass = [("transmission", "1"), ("transmission_extra_roughness", "0.5")];
-    let inputs = [&glass[..], &[("specular_roughness", "x"), ("coat", "1")]].concat();
-    rough(standard, &inputs, &["a.coat"], "a");
-}
-
-#[test]
 fn a_range_is_a_remapping() {
     let quarter = ("in", "interfacename='amount'");
     let fifth = [("inlow", "0.2"), ("inhigh", "0.4")];
@@ -363,25 +205,9 @@ fn a_range_is_a_remapping() {
     let far = load("a.mtlx", &graph(far));
     assert!(far.warnings.iter().any(|it| it.contains("not finite")), "{far:?}");
     assert_eq!(far.materials[0].lobe.roughness.x(), Interval::UNIT);
-    // The result is constant, so it may be an index of refraction.
+    // A constant, of which a Fresnel term may be made.
     let ior = node("range", "r", "float", &[("in", "1"), ("outhigh", "1.7")])
         + &node("open_pbr_surface", "a", "surfaceshader", &[("specular_ior", "nodename='r'")]);
     let eta = load("a.mtlx", &document(&ior)).materials[0].fresnel;
     assert_eq!(eta, Some(Reflectance::dielectric(1.7)));
-}
-
-#[test]
-fn an_input_that_says_nothing_is_the_default() {
-    let text = "<open_pbr_surface name='a' type='surfaceshader'>\
-                <input name='specular_roughness' type='float'/></open_pbr_surface>";
-    let scene = load("a.mtlx", &document(text));
-    assert_close(scene.materials[0].lobe.roughness, [0.09; 2], [0.09; 2]);
-}
-
-#[test]
-fn an_impossible_index_leaves_the_lobe_without_a_fresnel_term() {
-    let scene = shader("open_pbr_surface", &[("specular_ior", 0.0)]);
-    assert_eq!(scene.materials[0].fresnel, None);
-    let said = "more than 0; the lobe is read without its Fresnel term";
-    assert_says(&scene.warnings[0], &[said]);
 }

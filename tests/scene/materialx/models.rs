@@ -165,20 +165,3 @@ fn metals_have_the_reflectance_of_their_colour() {
     assert_eq!(open(&[("base_color", "1.2, 0.6, 0.3")]).materials[0].fresnel, None);
     assert_ne!(open(&[]).materials[0].lobe.roughness, anisotropic(0.09, 0.09));
 }
-
-#[test]
-fn a_film_that_cannot_be_known_costs_the_fresnel_term_alone() {
-    for (class, film) in [
-        ("standard_surface", "thin_film_thickness"),
-        ("open_pbr_surface", "thin_film_weight"),
-        ("gltf_pbr", "iridescence"),
-    ] {
-        let scene = shader(class, &[(film, f64::NAN)]);
-        assert_eq!((names(&scene), scene.ignored.len()), (vec!["a"], 0), "{class}");
-        assert_eq!(scene.materials[0].fresnel, None);
-        assert!(
-            scene.warnings[0].contains("the lobe is read without its Fresnel term"),
-            "{scene:?}"
-        );
-    }
-}

@@ -1,15 +1,12 @@
 //! Mitsuba 3 scenes.
 
-mod degraded;
 mod fresnel;
 
 use microfacet_baker::scene::{Format, Masking, Reflectance, Roughness};
 use microfacet_sampler::Metal;
 use microfacet_tables::Interval;
 
-use crate::{
-    Folder, anisotropic, assert_close, assert_refused, isotropic, load, named, names, png,
-};
+use crate::{Folder, anisotropic, assert_close, assert_warned, isotropic, load, named, names, png};
 
 fn scene(content: &str) -> String {
     format!("<scene version='3.0.0'>{content}</scene>")
@@ -185,17 +182,6 @@ fn parameters_and_includes_are_followed() {
 }
 
 #[test]
-fn includes_in_a_circle_are_refused() {
-    let folder = Folder::new(&[
-        ("a.xml", scene("<include filename='b.xml'/>")),
-        ("b.xml", scene("\n<include filename='a.xml'/>")),
-    ]);
-    let message = folder.load("a.xml").unwrap_err().to_string();
-    assert!(message.contains("b.xml:2:1: "), "{message}");
-    assert!(message.contains("a.xml -> b.xml -> a.xml"), "{message}");
-}
-
-#[test]
 fn textured_alpha_is_a_range() {
     let folder = Folder::new(&[
         ("grey.png", png()),
@@ -236,16 +222,10 @@ fn textured_alpha_is_a_range() {
 }
 
 #[test]
-fn zero_alpha_is_raised_and_warned_of() {
-    let scene = load("a.xml", &bsdf("roughconductor", "<float name='alpha' value='0'/>"));
-    assert_eq!(scene.materials[0].lobe.roughness, isotropic(1e-4));
-    assert!(scene.warnings[0].contains("a.xml:1:24: alpha is 0"), "{:?}", scene.warnings);
-}
-
-#[test]
-fn what_is_no_scene_is_refused() {
-    let case =
-        |text: &str, place: &str, parts: &[&str]| assert_refused("a.xml", text, place, parts);
-    case("<scene version='3.0.0'>\n<bsdf id='a'></scene>", ":2:14", &["bsdf"]);
-    case("<mesh/>", ":1:1", &["<mesh>", "<scene>"]);
+fn an_included_file_of_another_encoding_costs_itself_alone() {
+    let whole = scene("<include filename='b.xml'/><bsdf type='roughconductor' id='good'/>");
+    let folder = Folder::new(&[("a.xml", whole.as_bytes()), ("b.xml", b"<scene a='\xff'/>")]);
+    let scene = folder.load("a.xml").unwrap();
+    assert_eq!((names(&scene), scene.included.len()), (vec!["good"], 1));
+    assert_warned(&scene, "a.xml:1:24", &["b.xml is not well formed", "UTF-8", "are not seen"]);
 }

@@ -58,14 +58,6 @@ fn a_coat_divides_the_index_of_its_conductor() {
 }
 
 #[test]
-fn an_impossible_coat_is_warned_of_once() {
-    let text = format!("Material 'coatedconductor' {SILVER}\n'float interface.eta' -1");
-    let scene = load("a.pbrt", &text);
-    assert_warned(&scene, ":3:1", &["-1", "more than 0", "without its Fresnel term"]);
-    assert!(scene.materials.iter().all(|lobe| lobe.fresnel.is_none()), "{:?}", scene.materials);
-}
-
-#[test]
 fn eta_and_k_are_colours_or_names_and_copper_by_default() {
     let index = |parameters: &str| fresnel(&format!("'conductor' {parameters}"));
     let pair = |eta: &str, k: &str| index(&format!("'spectrum eta' {eta} 'spectrum k' {k}"));
@@ -76,7 +68,7 @@ fn eta_and_k_are_colours_or_names_and_copper_by_default() {
     assert_eq!(index("'spectrum eta' 'metal-Au-eta'"), Some(over(1.0, gold.eta(), copper.k())));
     let colour = [3.5, 2.5, 1.5];
     assert_eq!(index("'rgb k' [ 3.5 2.5 1.5 ]"), Some(over(1.0, copper.eta(), colour)));
-    // Spectra of samples, and textures.
+    // Spectra of the scene's own, and textures.
     assert_eq!(pair("[ 400 1.2 700 1.1 ]", "[ 400 3 700 4 ]"), None);
     assert_eq!(index("'spectrum eta' [ 400 1.2 700 1.1 ]"), None);
     assert_eq!(index("'texture k' 'map'"), None);
@@ -124,30 +116,4 @@ fn glasses_have_their_index_at_the_d_line() {
         let under = fresnel(&format!("'coatedconductor' 'spectrum interface.{parameter}"));
         assert_eq!(under, Some(over(eta, Metal::Copper.eta(), Metal::Copper.k())));
     }
-}
-
-#[test]
-fn other_names_of_spectra_are_warned_of() {
-    let case = |class: &str, parameters: &str, line: u32, parts: &[&str]| {
-        let scene = load("a.pbrt", &format!("Material '{class}'\n{parameters}"));
-        assert!(scene.materials.iter().all(|lobe| lobe.fresnel.is_none()), "{:?}", scene.materials);
-        let parts = [parts, &["without its Fresnel term"]].concat();
-        assert_warned(&scene, &format!(":{line}:1"), &parts);
-    };
-    let pair = |eta: &str, k: &str, line: u32, parts: &[&str]| {
-        let parameters = format!("'spectrum eta' '{eta}'\n'spectrum k' '{k}'");
-        case("conductor", &parameters, line, parts);
-    };
-    let unknown = "is not a spectrum that is known here";
-    pair("metal-MgO-eta", "metal-MgO-k", 2, &["eta 'metal-MgO-eta'", unknown, "'rgb eta'"]);
-    pair("metal-TiO2-eta", "metal-TiO2-k", 2, &["eta 'metal-TiO2-eta'", unknown]);
-    pair("metal-Au-k", "metal-Au-eta", 2, &["eta 'metal-Au-k'", unknown]);
-    pair("metal-Au-eta", "spd/Au.k.spd", 3, &["k 'spd/Au.k.spd'", "in a file", "'rgb k'"]);
-    let reflectance = "'spectrum reflectance' 'paint.spd'";
-    case("conductor", reflectance, 2, &["reflectance 'paint.spd'", "in a file"]);
-    let glass = "'spectrum eta' 'glass-SF5'";
-    case("dielectric", glass, 2, &["eta 'glass-SF5'", unknown, "'float eta'"]);
-    // One warning for both interfaces.
-    let coat = "'spectrum interface.eta' 'glass-BK8'";
-    case("coatedconductor", coat, 2, &["interface.eta 'glass-BK8'", unknown]);
 }

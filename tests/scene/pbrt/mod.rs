@@ -1,6 +1,5 @@
 //! pbrt-v4 scenes.
 
-mod degraded;
 mod fresnel;
 mod textures;
 
@@ -12,7 +11,7 @@ use microfacet_baker::scene::{Format, Masking, Reflectance, Roughness};
 use microfacet_sampler::Metal;
 use microfacet_tables::Interval;
 
-use crate::{Folder, anisotropic, assert_refused, assert_warned, isotropic, load, named, names};
+use crate::{Folder, anisotropic, assert_says, assert_warned, isotropic, load, named, names};
 
 /// A house of one distribution at a few roughnesses, as exporters write them.
 const HOUSE: &str = r#"
@@ -171,63 +170,14 @@ fn damage_in_a_packed_file_has_a_line() {
     assert!(error.contains("a.pbrt.gz:38:4: cannot be read"), "{error}");
 }
 
+/// The names are compared in the order of their definition, up to a limit.
 #[test]
-fn a_quote_of_one_stroke_is_a_character() {
-    let text = r#"MakeNamedMaterial "the baker\'s \"gold\"" "string type" "conductor""#;
-    let folder = Folder::new::<&str>(&[]);
-    std::fs::write(folder.path("a.pbrt"), text).unwrap();
-    assert_eq!(names(&folder.load("a.pbrt").unwrap()), ["the baker's \"gold\""]);
-}
-
-#[test]
-fn a_missing_include_leaves_everything_in_use() {
-    let scene = load(
-        "a.pbrt",
-        r#"
-        MakeNamedMaterial "a" "string type" "conductor" "float roughness" 0.01
-        Shape "sphere"
-        NamedMaterial "elsewhere"
-        Include "geometry.pbrt"
-        "#,
-    );
-    assert!(named(&scene, "a").used);
-    assert!(scene.warnings.iter().any(|w| w.contains("geometry.pbrt is missing")));
-    assert!(scene.warnings.iter().any(|w| w.contains("elsewhere")));
-}
-
-#[test]
-fn files_that_include_each_other_are_refused() {
-    let folder = Folder::new(&[("a.pbrt", "Include 'b.pbrt'"), ("b.pbrt", "\n  Import 'a.pbrt'")]);
-    let message = folder.load("a.pbrt").unwrap_err().to_string();
-    assert!(message.contains("b.pbrt:2:3: "), "{message}");
-    assert!(message.contains("a.pbrt -> b.pbrt -> a.pbrt"), "{message}");
-}
-
-#[test]
-fn bad_syntax_is_refused_at_its_place() {
-    let case =
-        |text: &str, place: &str, parts: &[&str]| assert_refused("a.pbrt", text, place, parts);
-    case("WorldBegin\n Shpe 'sphere'", ":2:2", &["Shpe", "did you mean `Shape`?"]);
-    case("Film 'rgb\n'", ":1:6", &["closing quote"]);
-    case("Film 'r\\gb'", ":1:6", &["escape"]);
-    case("Shape 'a' 'point3 P' [ 1 2\n 3", ":1:22", &["closing bracket"]);
-    case("Shape 'a' 'point3 P' [ 1 2\nShape 'b' 'point3 P' [ 1 ]", ":1:22", &["closing bracket"]);
-    case("Material 'conductor' 'float roughness' [ 1 'b", ":1:44", &["closing quote"]);
-    case("Material 'conductor' 'float roughness' [ 1", ":1:40", &["closing bracket"]);
-    case("Material 'conductor' 'float roughness'", ":1:22", &["no value"]);
-    case("Material 'conductor' 'roughness' 1", ":1:22", &["declares no parameter"]);
-    case("Material conductor", ":1:10", &["in quotes", "conductor"]);
-    case("Shape 'a' ]", ":1:11", &["closes no list"]);
-    case("AttributeEnd", ":1:1", &["without its beginning"]);
-    case("AttributeBegin", ":1:1", &["no end"]);
-    case("1 2 3", ":1:1", &["unknown directive 1"]);
-    case("[ 1 ]", ":1:1", &["expected a directive"]);
-    case("Include", ":1:1", &["file ends", "name of a file"]);
-}
-
-#[test]
-fn roughness_above_one_is_used_and_warned_of() {
-    let scene = load("a.pbrt", "Material 'conductor' 'float roughness' 4");
-    assert_eq!(scene.materials[0].lobe.roughness, isotropic(2.0));
-    assert!(scene.warnings[0].contains("a.pbrt:1:22: ") && scene.warnings[0].contains('4'));
+fn a_name_is_suggested_among_very_many() {
+    let named = |name: &str| format!("MakeNamedMaterial '{name}' 'string type' 'hair'\n");
+    let others = |count: usize| (0..count).map(|i| named(&format!("m{i}"))).collect::<String>();
+    for materials in [others(5000) + &named("velvet"), named("velvet") + &others(20_000)] {
+        let scene = load("a.pbrt", &(materials + "NamedMaterial 'velvte' Shape 'sphere'"));
+        let [warning] = &scene.warnings[..] else { panic!("{:?}", scene.warnings) };
+        assert_says(warning, &["'velvte' is not defined; did you mean `velvet`?"]);
+    }
 }
