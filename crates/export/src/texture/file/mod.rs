@@ -78,7 +78,7 @@ pub fn files(formats: &[Format], made: &[Made]) -> Result<Vec<ExportFile>, Strin
                 Format::Exr => exr(&made.texture, Some(&compact()))?,
                 Format::Dds => dds::encode(&made.texture)?,
                 Format::Ktx2 => ktx2::encode(&made.texture, Some(&compact())),
-                Format::Npy => npy::encode(&made.texture)?,
+                Format::Npy => npy::encode(&made.texture),
                 Format::C => header::encode(made).into_bytes(),
                 // Below, with the values.
                 Format::Json => continue,
