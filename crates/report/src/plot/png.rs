@@ -1,6 +1,5 @@
 //! A drawing as PNG.
 
-use ab_glyph::OutlineCurve;
 use png::{ColorType, Compression, EncodingError, Filter};
 use tiny_skia::{
     ColorU8, FillRule, LineJoin, Paint, Path, PathBuilder, Pixmap, PixmapPaint, Stroke, StrokeDash,
@@ -137,18 +136,13 @@ fn letters(text: &str, size: f64) -> Option<Path> {
     let scale = (size / em) as f32;
     let mut path = PathBuilder::new();
     for (start, curves) in letters {
-        let place = |p: ab_glyph::Point| [(start * size) as f32 + p.x * scale, -p.y * scale];
+        let place = |[x, y]: [f32; 2]| [(start * size) as f32 + x * scale, -y * scale];
         let mut last = None;
         for curve in curves {
-            let (from, bend, to) = match curve {
-                OutlineCurve::Line(a, b) => (place(a), place(a), place(b)),
-                OutlineCurve::Quad(a, bend, b) => (place(a), place(bend), place(b)),
-                OutlineCurve::Cubic(..) => unreachable!("TrueType outlines are quadratic"),
-            };
+            let [from, bend, to] = curve.map(place);
             if last != Some(from) {
                 path.move_to(from[0], from[1]);
             }
-            // A line is a curve that bends at its start.
             path.quad_to(bend[0], bend[1], to[0], to[1]);
             last = Some(to);
         }
