@@ -1,7 +1,7 @@
 //! Documents as they are: included, not well formed, with images in tiles.
 
 use super::document;
-use crate::{Folder, assert_close, assert_refused, assert_warned, load, names, png};
+use crate::{Folder, assert_close, assert_refused, assert_warned, load, names, png, png_of};
 
 const TEXTURED: &str = r#"<image name="i" type="float"><input name="file" value="a.png"/></image>
     <gltf_pbr name="a" type="surfaceshader"><input name="roughness" nodename="i"/></gltf_pbr>"#;

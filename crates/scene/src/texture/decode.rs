@@ -104,7 +104,8 @@ fn jpeg(bytes: &[u8], left: &Budget) -> Result<Pixels, String> {
     Ok(Pixels { stride, samples: Samples::Eight(pixels) })
 }
 
-/// The display window of the first part with R, G and B, and A if it has it; 0 where it has no data.
+/// The display window of the first part with R, G and B, and A if there is one; 0 where there is no
+/// data.
 fn exr(bytes: &[u8], left: &Budget) -> Result<Pixels, String> {
     let undecoded = |why: exr::error::Error| undecoded(format!("OpenEXR: {why}"));
     let reader = exr::block::read(Cursor::new(bytes), false).map_err(undecoded)?;
