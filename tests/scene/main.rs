@@ -13,7 +13,6 @@ mod transcript;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use image::{DynamicImage, ImageFormat, Rgb, RgbImage};
 use tempfile::TempDir;
 
 use microfacet_baker::scene::{Material, Roughness, Scene, SceneError, SceneErrorKind};
@@ -130,16 +129,17 @@ fn assert_close(roughness: Roughness, x: [f64; 2], y: [f64; 2]) {
 
 /// A PNG whose red is 51 and 102, green 102 and 204, blue 255 and 0.
 fn png() -> Vec<u8> {
-    let mut image = RgbImage::from_pixel(4, 4, Rgb([51, 102, 255]));
-    image.put_pixel(1, 3, Rgb([102, 204, 0]));
-    encoded(image, ImageFormat::Png)
+    png_of(png::ColorType::Rgb, 4, &[[51, 102, 255].repeat(15), vec![102, 204, 0]].concat())
 }
 
-/// The file of an image.
-fn encoded(image: impl Into<DynamicImage>, format: ImageFormat) -> Vec<u8> {
-    let mut file = std::io::Cursor::new(Vec::new());
-    image.into().write_to(&mut file, format).unwrap();
-    file.into_inner()
+/// A PNG of these samples of eight bits, so many pixels wide.
+fn png_of(color: png::ColorType, width: usize, samples: &[u8]) -> Vec<u8> {
+    let lines = samples.len() / (width * color.samples());
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, width as u32, lines as u32);
+    encoder.set_color(color);
+    encoder.write_header().unwrap().write_image_data(samples).unwrap();
+    file
 }
 
 #[test]

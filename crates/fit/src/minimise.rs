@@ -1,9 +1,12 @@
 //! The least value of a function of one or two coordinates, each in [0, 1]: a scan finds the basin,
 //! a local search its bottom.
 
+use std::array;
+
 use argmin::core::{CostFunction, Error, Executor, State};
 use argmin::solver::brent::BrentOpt;
 use argmin::solver::neldermead::NelderMead;
+use argmin_math::{ArgminAdd, ArgminMul, ArgminSub};
 
 /// The points of a scan in `steps` equal steps along each of `dimension` coordinates, both ends
 /// included; the last coordinate varies fastest.
@@ -50,18 +53,41 @@ pub(crate) fn descend(
     };
     // Off the edges of the square, where the simplex would be flat.
     let [x, y] = [x, y].map(|c| c.clamp(0.5 * h, 1.0 - 0.5 * h));
-    let simplex = vec![vec![x, y], vec![x + 0.4 * h, y], vec![x, y + 0.4 * h]];
+    let simplex = [[x, y], [x + 0.4 * h, y], [x, y + 0.4 * h]].map(Point).to_vec();
     let solver = NelderMead::new(simplex).with_sd_tolerance(stop.spread).map_err(failed)?;
     let run = Executor::new(Square(cost), solver)
         .configure(|s| s.max_iters(2000))
         .run()
         .map_err(failed)?;
-    let best = run.state().get_best_param().cloned().unwrap_or(vec![x, y]);
-    Ok(inside(&best))
+    let best = run.state().get_best_param().map_or([x, y], |best| best.0);
+    Ok(inside(best).to_vec())
 }
 
-fn inside(point: &[f64]) -> Vec<f64> {
-    point.iter().map(|y| y.clamp(0.0, 1.0)).collect()
+fn inside(point: [f64; 2]) -> [f64; 2] {
+    point.map(|y| y.clamp(0.0, 1.0))
+}
+
+/// A corner of a simplex. The crate's own arithmetic of lists comes with random ones of them, for
+/// which it needs a second generation of `rand`.
+#[derive(Clone, Debug)]
+struct Point([f64; 2]);
+
+impl ArgminAdd<Point, Point> for Point {
+    fn add(&self, other: &Point) -> Point {
+        Point(array::from_fn(|i| self.0[i] + other.0[i]))
+    }
+}
+
+impl ArgminSub<Point, Point> for Point {
+    fn sub(&self, other: &Point) -> Point {
+        Point(array::from_fn(|i| self.0[i] - other.0[i]))
+    }
+}
+
+impl ArgminMul<f64, Point> for Point {
+    fn mul(&self, factor: &f64) -> Point {
+        Point(self.0.map(|x| x * factor))
+    }
 }
 
 struct Line<F>(F);
@@ -78,10 +104,10 @@ impl<F: Fn(&[f64]) -> f64> CostFunction for Line<F> {
 struct Square<F>(F);
 
 impl<F: Fn(&[f64]) -> f64> CostFunction for Square<F> {
-    type Param = Vec<f64>;
+    type Param = Point;
     type Output = f64;
 
-    fn cost(&self, point: &Vec<f64>) -> Result<f64, Error> {
+    fn cost(&self, &Point(point): &Point) -> Result<f64, Error> {
         let inside = inside(point);
         let cost = (self.0)(&inside);
         // A point outside the square has the value at its edge plus a slope that leads the simplex

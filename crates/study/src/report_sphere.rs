@@ -5,6 +5,8 @@
 //! sphere.png` writes one, and `--lobe 45` prints the lobe for a view at 45 degrees; `--help` has
 //! the options.
 
+use std::fs::File;
+use std::io::BufWriter;
 use std::iter;
 use std::path::PathBuf;
 
@@ -80,6 +82,8 @@ pub fn run(arguments: &[String]) -> Outcome {
     }
     let Some(out) = out else { return Ok(()) };
     let pixels = picture(&set, &look, Film { size, samples, seed: 0 })?;
-    image::save_buffer(&out, pixels.as_flattened(), size, size, image::ColorType::Rgb8)?;
+    let mut encoder = png::Encoder::new(BufWriter::new(File::create(out)?), size, size);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.write_header()?.write_image_data(pixels.as_flattened())?;
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! Documents as they are: included, not well formed, with images in tiles.
 
 use super::document;
-use crate::{Folder, assert_close, assert_refused, load, names, png};
+use crate::{Folder, assert_close, assert_refused, load, names, png, png_of};
 
 const TEXTURED: &str = r#"<image name="i" type="float"><input name="file" value="a.png"/></image>
     <gltf_pbr name="a" type="surfaceshader"><input name="roughness" nodename="i"/></gltf_pbr>"#;
@@ -35,7 +35,7 @@ fn an_included_document_keeps_its_folder_and_its_prefix() {
 #[test]
 fn tiles_count_together() {
     let text = |file: &str| document(&TEXTURED.replace("a.png", file));
-    let dark = image::RgbImage::from_pixel(1, 1, image::Rgb([0, 0, 0]));
+    let dark = png_of(png::ColorType::Rgb, 1, &[0; 3]);
     for (token, names) in [
         ("<UDIM>", ["a.1001.png", "a.1012.png", "a.0999.png", "a.10010.png"]),
         ("<UVTILE>", ["a.u1_v1.png", "a.u2_v12.png", "a.u_v1.png", "a.1001.png"]),
@@ -54,10 +54,10 @@ fn tiles_count_together() {
             check([0.04, 0.16]);
             // What is no tile is not read.
             for name in &names[2..] {
-                dark.save(folder.path(name)).unwrap();
+                folder.write(name, &dark);
             }
             check([0.04, 0.16]);
-            dark.save(folder.path(names[1])).unwrap();
+            folder.write(names[1], &dark);
             check([0.0, 0.16]);
         }
     }

@@ -1,19 +1,18 @@
 //! Ranges of float textures.
 
-use image::{GrayImage, ImageFormat, Luma, Rgb, RgbImage, Rgba, Rgba32FImage, RgbaImage};
+use exr::prelude::{Image, SpecificChannels, Vec2, WritableImage};
+use png::ColorType;
 
 use microfacet_baker::scene::{Roughness, Scene};
 use microfacet_tables::Interval;
 
 use crate::{
-    Folder, assert_close, assert_not_understood, assert_warned, encoded, isotropic, load, named,
+    Folder, assert_close, assert_not_understood, assert_warned, isotropic, load, named, png_of,
 };
 
 /// A PNG of 51 and 102.
 fn grey() -> Vec<u8> {
-    let mut image = GrayImage::from_pixel(4, 4, Luma([51]));
-    image.put_pixel(1, 3, Luma([102]));
-    encoded(image, ImageFormat::Png)
+    png_of(ColorType::Grayscale, 4, &[[51; 15].as_slice(), &[102]].concat())
 }
 
 /// A scene whose only α is the image, under the parameters of its texture.
@@ -39,9 +38,7 @@ const DECODED: [f64; 2] = [0.033_104_766_570_885_055, 0.132_868_321_553_817_98];
 
 #[test]
 fn an_image_is_read_in_the_channels_of_its_filter() {
-    let mut image = RgbImage::from_pixel(2, 1, Rgb([51, 102, 255]));
-    image.put_pixel(1, 0, Rgb([51, 204, 0]));
-    let png = encoded(image, ImageFormat::Png);
+    let png = png_of(ColorType::Rgb, 2, &[51, 102, 255, 51, 204, 0]);
     let mean = [1.0 / 3.0, 1.6 / 3.0];
     for (filter, sigma) in [
         ("", mean),
@@ -57,33 +54,45 @@ fn an_image_is_read_in_the_channels_of_its_filter() {
 
 #[test]
 fn opacity_counts_where_it_is_not_1_everywhere() {
-    let image = |alpha: u8| {
-        let mut image = RgbaImage::from_pixel(2, 1, Rgba([51, 51, 51, 255]));
-        image.put_pixel(1, 0, Rgba([102, 102, 102, alpha]));
-        encoded(image, ImageFormat::Png)
-    };
+    let image = |alpha| png_of(ColorType::Rgba, 2, &[51, 51, 51, 255, 102, 102, 102, alpha]);
     check("a.png", image(255), LINEAR, [0.2, 0.4]);
     check("a.png", image(102), LINEAR, [0.4, 1.0]);
     check("a.png", image(102), &format!("{LINEAR} 'string filter' 'point'"), [0.2, 0.4]);
     // Decoded from sRGB like the colours.
     check("a.png", image(255), "", DECODED);
     check("a.png", image(102), "", [DECODED[1], 1.0]);
-    let mut floats = Rgba32FImage::from_pixel(2, 1, Rgba([0.5, 0.25, 0.75, 0.25]));
-    floats.put_pixel(1, 0, Rgba([0.5, 0.5, 0.5, 0.75]));
-    check("a.exr", encoded(floats, ImageFormat::OpenExr), "", [0.25, 0.75]);
+    let pixels = [(0.5_f32, 0.25_f32, 0.75_f32, 0.25_f32), (0.5, 0.5, 0.5, 0.75)];
+    let floats = SpecificChannels::rgba(|Vec2(x, _)| pixels[x]);
+    let mut exr = std::io::Cursor::new(Vec::new());
+    Image::from_channels((2, 1), floats).write().to_buffered(&mut exr).unwrap();
+    check("a.exr", exr.into_inner(), "", [0.25, 0.75]);
 }
 
 #[test]
 fn the_mean_is_of_decoded_channels() {
-    let image = RgbImage::from_pixel(2, 1, Rgb([51, 102, 102]));
+    let image = png_of(ColorType::Rgb, 2, &[51, 102, 102].repeat(2));
     let mean = (DECODED[0] + 2.0 * DECODED[1]) / 3.0;
-    check("rgb.png", encoded(image, ImageFormat::Png), "", [mean, mean]);
+    check("rgb.png", image, "", [mean, mean]);
 }
+
+/// A JPEG of 8 by 8 pixels of 102, in its segments: one component, and codes of one bit.
+const JPEG: [&[u8]; 9] = [
+    b"\xFF\xD8",
+    b"\xFF\xDB\0\x43\0",
+    &[1; 64],
+    b"\xFF\xC0\0\x0B\x08\0\x08\0\x08\x01\x01\x11\0",
+    // The mean by a difference of eight bits, and no other coefficient.
+    b"\xFF\xC4\0\x14\0\x01\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x08",
+    b"\xFF\xC4\0\x14\x10\x01\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0",
+    b"\xFF\xDA\0\x08\x01\x01\0\0\x3F\0",
+    // 8 (102 - 128) = -208: the code 0, then 255 - 208 = 00101111, and the code 0.
+    &[0b0_0010_111, 0b1_0_111111],
+    b"\xFF\xD9",
+];
 
 #[test]
 fn only_a_png_has_an_encoding_to_choose() {
-    let image = GrayImage::from_pixel(8, 8, Luma([102]));
-    let jpeg = encoded(image, ImageFormat::Jpeg);
+    let jpeg = JPEG.concat();
     check("a.jpg", jpeg, LINEAR, [DECODED[1], DECODED[1]]);
     let scene = scene("A.PNG", grey(), "'string encoding' 'gamma 2.2'");
     assert_warned(&scene, ":1:1", &["A.PNG", "other than 'sRGB' and 'linear'"]);

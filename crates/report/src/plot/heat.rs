@@ -106,6 +106,7 @@ fn shade(fraction: f64, shades: usize) -> Color {
 #[cfg(test)]
 mod tests {
     use super::super::panel::{BELOW, LEFT, RIGHT};
+    use super::super::png::decode;
     use super::*;
 
     fn map(values: Vec<f64>, ring: Option<[f64; 2]>) -> HeatMap {
@@ -115,11 +116,11 @@ mod tests {
     }
 
     fn at(map: &HeatMap, [x, y]: [f64; 2]) -> Color {
-        let image = image::load_from_memory(&map.drawing().png().unwrap()).unwrap().to_rgb8();
+        let (pixels, columns) = decode(&map.drawing().png().unwrap());
         let [width, height] = [400.0 - LEFT - RIGHT, 300.0 - BARE - BELOW];
         let place = [LEFT + x * width, BARE + (1.0 - y) * height];
-        let [x, y] = place.map(|x| (2.0 * x) as u32);
-        image.get_pixel(x, y).0
+        let [x, y] = place.map(|x| (2.0 * x) as usize);
+        pixels[y * columns + x]
     }
 
     #[test]

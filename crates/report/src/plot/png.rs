@@ -1,10 +1,6 @@
 //! A drawing as PNG.
 
-use std::io::Cursor;
-
-use ab_glyph::OutlineCurve;
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{ExtendedColorType, ImageEncoder, ImageResult};
+use png::{ColorType, Compression, EncodingError, Filter};
 use tiny_skia::{
     ColorU8, FillRule, LineJoin, Paint, Path, PathBuilder, Pixmap, PixmapPaint, Stroke, StrokeDash,
     Transform,
@@ -31,26 +27,35 @@ impl Drawing {
         }
         // Alpha is dropped: the white background is opaque.
         let rgb: Vec<u8> = pixmap.data().chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
-        let png = encode(&rgb, [width, height], FilterType::Adaptive);
+        let png = encode(&rgb, [width, height], Filter::Adaptive);
         png.map_err(|why| PlotError::Drawing(why.to_string()))
     }
 }
 
-fn encode(rgb: &[u8], [width, height]: [u32; 2], filter: FilterType) -> ImageResult<Vec<u8>> {
-    let mut file = Cursor::new(Vec::new());
-    PngEncoder::new_with_quality(&mut file, CompressionType::Best, filter).write_image(
-        rgb,
-        width,
-        height,
-        ExtendedColorType::Rgb8,
-    )?;
-    Ok(file.into_inner())
+fn encode(rgb: &[u8], [width, height]: [u32; 2], filter: Filter) -> Result<Vec<u8>, EncodingError> {
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, width, height);
+    encoder.set_color(ColorType::Rgb);
+    encoder.set_compression(Compression::High);
+    encoder.set_filter(filter);
+    encoder.write_header()?.write_image_data(rgb)?;
+    Ok(file)
+}
+
+/// The pixels of a PNG that was written here, and how many stand in a line.
+#[cfg(test)]
+pub(super) fn decode(file: &[u8]) -> (Vec<Color>, usize) {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().unwrap();
+    let mut rgb = vec![0; reader.output_buffer_size().unwrap()];
+    let frame = reader.next_frame(&mut rgb).unwrap();
+    assert_eq!(frame.color_type, ColorType::Rgb);
+    (rgb.as_chunks().0.to_vec(), frame.width as usize)
 }
 
 /// An image of whole lines. Most have few colours, from which filters would make more values.
 pub(super) fn of_pixels(pixels: &[Color], columns: usize) -> Vec<u8> {
     let size = [columns, pixels.len() / columns].map(|edge| edge as u32);
-    encode(pixels.as_flattened(), size, FilterType::NoFilter).expect("whole lines, in memory")
+    encode(pixels.as_flattened(), size, Filter::NoFilter).expect("whole lines, in memory")
 }
 
 fn draw(pixmap: &mut Pixmap, shape: &Shape) {
@@ -131,18 +136,13 @@ fn letters(text: &str, size: f64) -> Option<Path> {
     let scale = (size / em) as f32;
     let mut path = PathBuilder::new();
     for (start, curves) in letters {
-        let place = |p: ab_glyph::Point| [(start * size) as f32 + p.x * scale, -p.y * scale];
+        let place = |[x, y]: [f32; 2]| [(start * size) as f32 + x * scale, -y * scale];
         let mut last = None;
         for curve in curves {
-            let (from, bend, to) = match curve {
-                OutlineCurve::Line(a, b) => (place(a), place(a), place(b)),
-                OutlineCurve::Quad(a, bend, b) => (place(a), place(bend), place(b)),
-                OutlineCurve::Cubic(..) => unreachable!("TrueType outlines are quadratic"),
-            };
+            let [from, bend, to] = curve.map(place);
             if last != Some(from) {
                 path.move_to(from[0], from[1]);
             }
-            // A line is a quadratic curve with its control point at its start.
             path.quad_to(bend[0], bend[1], to[0], to[1]);
             last = Some(to);
         }

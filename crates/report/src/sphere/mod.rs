@@ -5,6 +5,7 @@
 //! in Rust, `data` is what the script gets; `sphere.frag` draws it in a browser.
 
 mod data;
+mod jpeg;
 mod lobe;
 mod random;
 mod scene;
@@ -21,8 +22,8 @@ use microfacet_sampler::{BindError, Masking, Tables};
 use super::subjects::{Shown, Subjects};
 use super::{ReportError, Source};
 use data::{Data, SIGMA, UNSTATED, is_unstated, label, look};
+use scene::Scene;
 pub use scene::{Film, Look, tangent_frame};
-use scene::{Scene, jpeg};
 pub use studio::by_cosine;
 pub use tone::srgb;
 
@@ -91,7 +92,7 @@ fn pictures(
 ) -> Result<Vec<String>, ReportError> {
     let picture = |shown| {
         let scene = Scene::new(tables, &look(subjects, shown)).map_err(unbound)?;
-        let file = jpeg(&scene.picture(PICTURE), PICTURE.size);
+        let file = jpeg::encode(&scene.picture(PICTURE), PICTURE.size as usize);
         stage.step();
         Ok(format!("data:image/jpeg;base64,{}", STANDARD.encode(file)))
     };

@@ -2,8 +2,6 @@
 //! numbers and estimators are those of `sphere.frag`.
 
 use glam::{Mat3, Vec3};
-use image::codecs::jpeg::JpegEncoder;
-use image::{ExtendedColorType, ImageEncoder};
 use microfacet_sampler::{
     BindError, Bsdf, Compensation, Conductor, ConductorFresnel, Lobe, MicrofacetDistribution,
     StandIn, Tables, Transport,
@@ -137,12 +135,4 @@ pub fn tangent_frame(n: Vec3) -> Mat3 {
 fn tent(u: f32) -> f32 {
     let t = 2.0 * u - 1.0;
     (1.0 - (1.0 - t.abs()).sqrt()).copysign(t)
-}
-
-pub(super) fn jpeg(pixels: &[[u8; 3]], size: u32) -> Vec<u8> {
-    let mut file = Vec::new();
-    JpegEncoder::new_with_quality(&mut file, 90)
-        .write_image(pixels.as_flattened(), size, size, ExtendedColorType::Rgb8)
-        .expect("whole lines, in memory");
-    file
 }

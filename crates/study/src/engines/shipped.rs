@@ -1,8 +1,10 @@
 //! Reads the tables of engines: as shipped, or as `export lut --layout` writes them.
 
-use std::io::Read;
+use std::array;
+use std::io::{Cursor, Read};
 
 use base64::Engine;
+use exr::prelude::{ReadChannels, ReadLayers};
 use half::f16;
 
 use microfacet_export::texture::Texture;
@@ -45,22 +47,15 @@ pub fn decode(layout: &Layout, bytes: &[u8]) -> Texture {
             } else {
                 bytes.to_vec()
             };
-            let image = image::load_from_memory(&png).expect("an image").to_rgba8();
-            let texel = |p: &image::Rgba<u8>| {
-                let [r, g, b, a] = p.0.map(|x| f32::from(x) / 255.0);
-                [r, g, b].map(|x| x.powf(2.2) / a)
-            };
-            (image.pixels().flat_map(texel).collect(), size_of(&image))
+            let (pixels, size) = pixels::<4>(&png);
+            let texel = |[r, g, b, a]: [f32; 4]| [r, g, b].map(|x| x.powf(2.2) / a);
+            (pixels.into_iter().flat_map(texel).collect(), size)
         }
         "gltf" => {
-            let image = image::load_from_memory(bytes).expect("an image").to_rgb8();
-            let values = image.pixels().flat_map(|p| p.0.map(|x| f32::from(x) / 255.0)).collect();
-            (values, size_of(&image))
+            let (pixels, size) = pixels::<3>(bytes);
+            (pixels.concat(), size)
         }
-        _ => {
-            let image = image::load_from_memory(bytes).expect("an image").to_rgb32f();
-            (image.to_vec(), size_of(&image))
-        }
+        _ => floats(bytes),
     };
     let spec = layout.specs(2.0, size, false).remove(0);
     assert_eq!(values.len(), size[0] * size[1] * spec.channels.len(), "{}", layout.name);
@@ -88,8 +83,45 @@ fn halves(text: &str) -> Vec<f32> {
     numbers.map(|x| f16::from_bits(half(x)).to_f32()).collect()
 }
 
-fn size_of(image: &impl image::GenericImageView) -> [usize; 2] {
-    [image.height(), image.width()].map(|n| n as usize)
+/// Red, green, blue and opacity of any PNG, or the first N of them, and its height and width.
+fn pixels<const N: usize>(file: &[u8]) -> (Vec<[f32; N]>, [usize; 2]) {
+    let mut decoder = png::Decoder::new(Cursor::new(file));
+    decoder.set_transformations(png::Transformations::normalize_to_color8());
+    let mut reader = decoder.read_info().expect("an image");
+    let mut bytes = vec![0; reader.output_buffer_size().expect("a small image")];
+    let frame = reader.next_frame(&mut bytes).expect("an image");
+    let samples = frame.color_type.samples();
+    let pixel = |pixel: &[u8]| {
+        let (opacity, colour) = match samples {
+            2 | 4 => pixel.split_last().expect("several samples"),
+            _ => (&255, pixel),
+        };
+        array::from_fn(|i| if i == 3 { *opacity } else { colour[i % colour.len()] })
+            .map(|x| f32::from(x) / 255.0)
+    };
+    let size = [frame.height, frame.width].map(|n| n as usize);
+    (bytes.chunks(samples).map(pixel).collect(), size)
+}
+
+/// Colours of an OpenEXR image, and its height and width.
+fn floats(file: &[u8]) -> (Vec<f32>, [usize; 2]) {
+    let image = exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .rgb_channels(
+            |size, _| (vec![0.0; 3 * size.area()], size),
+            |(values, size), at, (r, g, b): (f32, f32, f32)| {
+                let first = 3 * at.flat_index_for_size(*size);
+                values[first..first + 3].copy_from_slice(&[r, g, b]);
+            },
+        )
+        .first_valid_layer()
+        .all_attributes()
+        .non_parallel()
+        .from_buffered(Cursor::new(file))
+        .expect("an image");
+    let (values, size) = image.layer_data.channel_data.pixels;
+    (values, [size.height(), size.width()])
 }
 
 fn square(values: Vec<f32>, channels: usize) -> (Vec<f32>, [usize; 2]) {

@@ -1,39 +1,48 @@
-//! DirectDraw Surface, with the header of Direct3D 10.
-
-use ddsfile::{AlphaMode, Caps2, D3D10ResourceDimension, Dds, DxgiFormat, NewDxgiParams};
+//! DirectDraw Surface, with the header of Direct3D 10 (Microsoft, "Programming Guide for DDS").
 
 use super::{bytes, extent, is_volume};
 use crate::texture::Texture;
 
-pub(super) fn encode(texture: &Texture) -> Result<Vec<u8>, String> {
-    let format = match (texture.half, texture.spec.channels.len()) {
-        (false, 1) => DxgiFormat::R32_Float,
-        (false, _) => DxgiFormat::R32G32_Float,
-        (true, 1) => DxgiFormat::R16_Float,
-        (true, _) => DxgiFormat::R16G16_Float,
+/// Its kind, height, width and format are stated.
+const STATED: u32 = 0x1 | 0x2 | 0x4 | 0x1000;
+/// Bytes of a row are stated.
+const PITCH: u32 = 0x8;
+/// Slices are stated.
+const DEPTH: u32 = 0x80_0000;
+/// Of the pixels: a code of four letters says more, and the size of an uncompressed one is stated.
+const CODE: u32 = 0x4 | 0x40;
+/// What the surface is: a texture, of several parts, a volume.
+const TEXTURE: u32 = 0x1000;
+const COMPLEX: u32 = 0x8;
+const VOLUME: u32 = 0x20_0000;
+
+pub(super) fn encode(texture: &Texture) -> Vec<u8> {
+    // DXGI_FORMAT_R32_FLOAT, R32G32_FLOAT, R16_FLOAT and R16G16_FLOAT; none is an opacity.
+    let (format, pixel) = match (texture.half, texture.spec.channels.len()) {
+        (false, 1) => (41, 4),
+        (false, _) => (16, 8),
+        (true, 1) => (54, 2),
+        (true, _) => (34, 4),
     };
     let [width, height, depth] = extent(texture).map(|n| n as u32);
     let volume = is_volume(texture);
-    let params = NewDxgiParams {
+    let if_volume = |x| if volume { x } else { 0 };
+    let surface = [
+        124,
+        STATED | PITCH | if_volume(DEPTH),
         height,
         width,
-        depth: volume.then_some(depth),
-        format,
-        mipmap_levels: None,
-        array_layers: None,
-        caps2: volume.then_some(Caps2::VOLUME),
-        is_cubemap: false,
-        resource_dimension: if volume {
-            D3D10ResourceDimension::Texture3D
-        } else {
-            D3D10ResourceDimension::Texture2D
-        },
-        // None of the channels is an opacity.
-        alpha_mode: AlphaMode::Unknown,
-    };
-    let mut dds = Dds::new_dxgi(params).map_err(|why| why.to_string())?;
-    dds.data = bytes(texture);
-    let mut out = Vec::new();
-    dds.write(&mut out).map_err(|why| why.to_string())?;
-    Ok(out)
+        width * pixel,
+        if_volume(depth),
+        // Levels beside the first, and eleven words without use.
+        0,
+    ];
+    let code = [32, CODE, u32::from_le_bytes(*b"DX10"), 8 * pixel, 0, 0, 0, 0];
+    let kind = [TEXTURE | if_volume(COMPLEX), if_volume(VOLUME), 0, 0, 0];
+    // Dimensions as Direct3D counts resources: 3 is a texture of two, 4 of three; then an array of
+    // one.
+    let direct3d = [format, if volume { 4 } else { 3 }, 0, 1, 0];
+    let header = [&surface[..], &[0; 11], &code, &kind, &direct3d].concat();
+    let header: Vec<u8> = header.into_iter().flat_map(u32::to_le_bytes).collect();
+    [b"DDS ".to_vec(), header, bytes(texture)].concat()
 }

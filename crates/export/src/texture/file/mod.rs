@@ -76,9 +76,9 @@ pub fn files(formats: &[Format], made: &[Made]) -> Result<Vec<ExportFile>, Strin
             let compact = || describe::compact(&description);
             let contents = match format {
                 Format::Exr => exr(&made.texture, Some(&compact()))?,
-                Format::Dds => dds::encode(&made.texture)?,
+                Format::Dds => dds::encode(&made.texture),
                 Format::Ktx2 => ktx2::encode(&made.texture, Some(&compact())),
-                Format::Npy => npy::encode(&made.texture)?,
+                Format::Npy => npy::encode(&made.texture),
                 Format::C => header::encode(made).into_bytes(),
                 // Written after the other formats, with the values.
                 Format::Json => continue,
