@@ -29,7 +29,7 @@ pub mod texture;
 pub use albedo::AlbedoTable;
 pub use members::Part;
 pub use shader::{Language, Storage, texture_rows};
-pub use shader::{WIDTH, append_some, for_webgl};
+pub use shader::{WIDTH, append_some, for_webgl, wgsl_crc32};
 pub use shape::Shape;
 
 /// The language of an export.

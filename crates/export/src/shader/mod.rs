@@ -5,6 +5,8 @@ mod language;
 
 use std::fmt::Write;
 
+use microfacet_tables::crc32;
+
 use super::members::{Member, Value};
 use super::{ExportFile, Shape};
 pub use data::texture_rows;
@@ -48,6 +50,18 @@ pub(super) fn files(language: Language, storage: Storage, shapes: &[Shape]) -> V
 /// The functions for WebGL 2, without the comment at the head of the file.
 pub fn for_webgl() -> &'static str {
     include_str!("translated/texture_es.glsl")
+}
+
+/// The CRC-32 of the WGSL that is translated, without its comments, which `translated/wgsl.crc32`
+/// states: so a test finds old translations without a translator.
+#[doc(hidden)]
+pub fn wgsl_crc32(shape: &Shape) -> String {
+    let texts = [Storage::Buffer, Storage::Texture].map(|storage| {
+        format!("{}\n{}", module(&shape.lists(), storage), Language::SpirV.sample(storage))
+    });
+    let lines = texts.iter().flat_map(|text| text.lines());
+    let code: Vec<&str> = lines.filter(|line| !line.trim_start().starts_with("//")).collect();
+    crc32(code.join("\n").as_bytes())
 }
 
 /// All text in WGSL, the same for all shapes, so that it can be translated before they are known.
@@ -119,6 +133,13 @@ mod tests {
         let (mask, shift) = (width - 1, width.ilog2());
         let texel = format!("at & {mask}u), i32(at >> {shift}u)");
         assert!(width.is_power_of_two() && include_str!("texture.wgsl").contains(&texel));
+    }
+
+    #[test]
+    fn translations_are_those_of_the_wgsl() {
+        let shape = Shape::bind(&Tables::embedded(), 2.0).unwrap();
+        let stated = include_str!("translated/wgsl.crc32").trim();
+        assert_eq!(stated, wgsl_crc32(&shape), "translated/README.md says how to translate anew");
     }
 
     #[test]

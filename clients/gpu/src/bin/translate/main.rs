@@ -10,11 +10,14 @@ use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 
-use microfacet_export::{Language, Shape, Storage, Target, files};
+use microfacet_export::{Language, Shape, Storage, Target, files, wgsl_crc32};
 use microfacet_sampler::Tables;
 
 /// Where they are, in the repository.
 const FOLDER: &str = "crates/export/src/shader/translated";
+
+/// The checksum of the WGSL that was translated.
+const CHECKSUM: &str = "wgsl.crc32";
 
 /// What to do if one differs.
 const REMEDY: &str = "write all anew: cargo run --release --manifest-path clients/gpu/Cargo.toml \
@@ -45,6 +48,14 @@ fn main() -> ExitCode {
     };
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(FOLDER);
     let mut good = true;
+    let checksum = wgsl_crc32(&shape()) + "\n";
+    let path = folder.join(CHECKSUM);
+    if writes {
+        fs::write(path, checksum).expect(CHECKSUM);
+    } else if fs::read_to_string(path).expect(CHECKSUM) != checksum {
+        eprintln!("error: {FOLDER}/{CHECKSUM} is not that of the WGSL");
+        good = false;
+    }
     for (name, language, storage) in FILES {
         let [module, sample] = exported(Language::Wgsl, storage);
         let translation = languages::translate(&module, &sample, language, storage);
@@ -69,7 +80,10 @@ fn main() -> ExitCode {
 
 /// Module and program of an export. They are the same for all shapes.
 fn exported(language: Language, storage: Storage) -> [Vec<u8>; 2] {
-    let shape = Shape::bind(&Tables::embedded(), 2.0).expect("a shape of the default set");
-    let mut files = files(Target::Shader(language, storage), &[shape]).into_iter();
+    let mut files = files(Target::Shader(language, storage), &[shape()]).into_iter();
     [0; 2].map(|_| files.next().expect("a module and a program").contents)
+}
+
+fn shape() -> Shape {
+    Shape::bind(&Tables::embedded(), 2.0).expect("a shape of the default set")
 }
