@@ -32,26 +32,31 @@ def materials(count: int) -> Iterator[dict[str, Any]]:
         yield {"name": f"metal {i}", "sigma": sigma, "gamma": gamma, "fresnel": "mirror"}
 
 
-def cluster(workers: int) -> LocalCluster:
-    return LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=":0")
-
-
 def seconds(workers: int, count: int) -> float:
     """The time of a bake of draft quality on so many workers of one thread."""
-    with cluster(workers) as at, Client(at) as client, tempfile.TemporaryDirectory() as folder:
+    cluster = LocalCluster(
+        n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=":0"
+    )
+    with tempfile.TemporaryDirectory() as folder, cluster, Client(cluster) as client:
+        out, cache = Path(folder) / "out", Path(folder) / "cache"
+        options: dict[str, Any] = {"quality": "draft", "seconds_per_task": 0.5}
         done = farm.bake(
-            materials(count), client, Path(folder, "out"), cache=Path(folder, "cache"),
-            quality="draft", seconds_per_task=0.5, progress=False,
+            materials(count), client, out, cache=cache, progress=False, **options
         )
-    assert done.made_up == done.kept == 0
-    return done.seconds
+        assert done.made_up == done.kept == 0
+        return done.seconds
 
 
 def overhead(tasks: int) -> float:
     """The seconds of a task that has nothing to do."""
-    with cluster(2) as at, Client(at) as client:
+    cluster = LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0"
+    )
+    with cluster, Client(cluster) as client:
         start = time.monotonic()
-        empty = client.map(farm._work, [[]] * tasks, cache=None, max_memory=1 << 30, pure=False)
+        empty = [
+            client.submit(farm._work, [], None, 1 << 30, key=f"empty-{i}") for i in range(tasks)
+        ]
         for future in as_completed(empty):
             future.result()
         return (time.monotonic() - start) / tasks
@@ -60,16 +65,17 @@ def overhead(tasks: int) -> float:
 def plan(count: int) -> None:
     """Plans a list as it goes, and prints what that takes."""
     start = time.monotonic()
-    needs = {
-        need.id: need.seconds
-        for library in farm.libraries(materials(count), quality="default")
-        for need in library.needs()
-    }
+    needs, work = 0, 0.0
+    seen: set[str] = set()
+    for library in farm.libraries(materials(count), quality="default"):
+        for need in library.needs():
+            if need.id not in seen:
+                seen.add(need.id)
+                needs, work = needs + 1, work + need.seconds
     took = time.monotonic() - start
     # Linux counts kilobytes.
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
-    hours = sum(needs.values()) / 3600
-    print(f"driver: {count} materials, {len(needs)} needs, {hours:.0f} core hours")
+    print(f"driver: {count} materials, {needs} needs, {work / 3600:.0f} core hours")
     print(f"driver: planned in {took:.1f} s, {peak / 1e6:.0f} MB at most")
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import os
 import pickle
+import random
 import signal
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -29,28 +30,23 @@ def materials(count: int = COUNT) -> Iterator[dict[str, Any]]:
         yield {"name": f"m {i}", "sigma": sigma, "gamma": gamma, "fresnel": "mirror"}
 
 
-RECIPE = "".join(
-    f'[[material]]\nname = "{m["name"]}"\nsigma = {m["sigma"]}\ngamma = {m["gamma"]}\n'
-    'fresnel = "mirror"\n'
-    for m in materials()
-)
+def recipe() -> str:
+    return "\n".join(
+        f'[[material]]\nname = "{m["name"]}"\nsigma = {m["sigma"]}\ngamma = {m["gamma"]}\n'
+        'fresnel = "mirror"'
+        for m in materials()
+    )
 
 
 def content(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
-@contextmanager
-def cluster(workers: int) -> Iterator[Any]:
-    options = {"threads_per_worker": 1, "dashboard_address": ":0"}
-    with distributed.LocalCluster(n_workers=workers, **options) as cluster:
-        with distributed.Client(cluster, set_as_default=False) as client:
-            yield client
-
-
 @pytest.fixture(scope="module")
 def client() -> Iterator[Any]:
-    with cluster(2) as client:
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0"
+    ) as cluster, distributed.Client(cluster, set_as_default=False) as client:
         yield client
 
 
@@ -58,7 +54,7 @@ def client() -> Iterator[Any]:
 def alone(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     """What one process makes, with no cache."""
     out = tmp_path_factory.mktemp("alone")
-    microfacet.bake(RECIPE, out / "set", quality="draft", cache=False)
+    microfacet.bake(recipe(), out / "set", quality="draft", cache=False)
     return content(out / "set")
 
 
@@ -71,29 +67,36 @@ def farmed(scene: farm.Scene, client: Any, out: Path, **options: Any) -> farm.Fa
 def test_the_bytes_are_those_of_one_process(
     client: Any, alone: dict[str, bytes], tmp_path: Path, shared: bool
 ) -> None:
-    done = farmed(RECIPE, client, tmp_path / "out", shared=shared, seconds_per_task=0.2)
+    done = farmed(recipe(), client, tmp_path / "out", shared=shared, seconds_per_task=0.2)
     assert (done.materials, done.baked, done.kept, done.made_up) == (COUNT, COUNT + 2, 0, 0)
     assert content(tmp_path / "out") == alone
-    again = farmed(RECIPE, client, tmp_path / "out", shared=shared)
+    again = farmed(recipe(), client, tmp_path / "out", shared=shared)
     assert (again.baked, again.kept, again.made_up) == (0, COUNT + 2, 0)
     assert content(tmp_path / "out") == alone
 
 
-def test_a_worker_that_is_killed_loses_nothing(client: Any, tmp_path: Path) -> None:
-    process = min(client.run(os.getpid).values())
+def test_a_worker_that_is_killed_loses_nothing(
+    client: Any, alone: dict[str, bytes], tmp_path: Path
+) -> None:
+    before = set(client.run(os.getpid).values())
+    killed: list[int] = []
 
     def kill_on_the_way() -> Iterator[dict[str, Any]]:
-        *most, last = materials()
-        yield from most
-        # Tasks of the first sets are under way.
-        time.sleep(0.3)
-        os.kill(process, signal.SIGKILL)
-        yield last
+        for i, material in enumerate(materials()):
+            if i == COUNT - 1:
+                # Tasks of the first sets are under way.
+                time.sleep(0.3)
+                killed.append(min(before))
+                os.kill(killed[0], signal.SIGKILL)
+            yield material
 
-    farmed(kill_on_the_way(), client, tmp_path / "out", per_set=2, seconds_per_task=0.01)
-    assert process not in client.run(os.getpid).values()
-    names = [material["name"] for material in materials()]
-    assert microfacet.Tables(tmp_path / "out").materials == names
+    done = farmed(
+        kill_on_the_way(), client, tmp_path / "out", per_set=2, seconds_per_task=0.01
+    )
+    assert killed and done.materials == COUNT
+    one = microfacet.bake(recipe(), quality="draft", cache=False)
+    tables = microfacet.Tables(tmp_path / "out")
+    assert tables.materials == one.materials
     # The numbered sets are those that the cluster makes when nothing happens.
     farmed(materials(), client, tmp_path / "calm", per_set=2, cache=tmp_path / "other")
     assert content(tmp_path / "calm") == content(tmp_path / "out")
@@ -114,32 +117,58 @@ def test_numbered_sets_open_as_one_or_in_part(client: Any, tmp_path: Path) -> No
         microfacet.Tables(tmp_path / "out", materials=["gold"])
 
 
-#: Values of all kinds, keys in any order, names of any length and characters.
-SHAPES = r'''
-{ name = "m", sigma = 0.1, gamma = 2.3 }
-{ sigma = 0.1, name = "short", gamma = 2.3 }
-{ name = "LONG", sigma = 0.1, gamma = 2.3 }
-{ name = "a 'b' \\ \"c\" # [[material]]", gamma = { min = 3.0, max = 4 }, sigma = 0 }
-{ name = "\n[[material]]\r\n", sigma = [{ min = 0.1, max = 0.2 }, 0.3], gamma = "inf" }
-{ name = "м漢\u0085\u0000", gamma = inf, sigma = { min = 0.1, max = 0.2 }, fresnel = "mirror" }
-{ fresnel = { schlick = 0.04 }, name = "plastic", sigma = [0.3, 0.2], gamma = 3 }
-{ name = "word", fresnel = { metal = "gold" }, distribution = "beckmann", m = 0.25 }
-{ distribution = "gauss", m = 0.3, name = "gauss LONG", masking = "uncorrelated" }
-{ name = "number", sigma = 0.3, distribution = "student-t", gamma = 1e20 }
-{ fresnel = { conductor = { eta = [0.1, 1, 2], k = [4, 2.4, 2] } }, name = "c", sigma = 1, gamma = 3 }
-{ name = "tilted", theta = [3, -6.5, 30], sigma = 0.3, gamma = 2.5 }
-{ theta = [3, -6.5, 30], name = "t", sigma = [0.4, 0.2], degrees = true, gamma = 2.5 }
-'''.replace("LONG", "n" * 120).strip().splitlines()
+def literal(value: Any) -> str:
+    """A value in the TOML that one writes by hand, on one line."""
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {literal(item)}" for key, item in value.items()) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(literal, value)) + "]"
+    return json.dumps(value) if isinstance(value, (str, bool)) else repr(value)
+
+
+def any_material(rng: random.Random, number: int) -> dict[str, Any]:
+    """A material of any shape: numbers, lists and tables, names of any length and characters."""
+    some = rng.choice
+    names = ["m", "n" * 120, 'a "b" \\ \'c\' # [[material]]', "\n[[material]]\r\n",
+             "м漢\u0085\x00"]
+    name = some(names)
+    of = some(["sigma", "sigma", "sigma", "theta", "word", "number"])
+    table: dict[str, Any] = {"name": f"{name} {number}"}
+    if of == "word":
+        table |= {"distribution": some(["beckmann", "gauss"]), "m": some([0.25, 0.3])}
+    elif of == "number":
+        table |= {"distribution": "student-t", "sigma": 0.3, "gamma": some([3.0, 1e20])}
+    elif of == "theta":
+        table |= {"sigma": some([0.3, [0.4, 0.2]]), "gamma": 2.5, "theta": [3, -6.5, 30]}
+        table |= some([{}, {"degrees": True}])
+    else:
+        extent = {"min": 0.1, "max": 0.2}
+        table["sigma"] = some([0.3, 0, [0.3, 0.2], extent, [extent, 0.3], [extent, extent]])
+        table["gamma"] = some([2.3, 3, "inf", float("inf"), {"min": 3.0, "max": 4}])
+    index = {"eta": [0.14, 0.37, 1.44], "k": [3.98, 2.39, 1.6]}
+    fresnel = some([None, "mirror", {"schlick": 0.04}, {"metal": "gold"}, {"conductor": index}])
+    if fresnel and of != "theta":
+        table |= {"fresnel": fresnel, "masking": some(["uncorrelated", "height-correlated"])}
+    entries = list(table.items())
+    rng.shuffle(entries)
+    return dict(entries)
 
 
 @pytest.mark.filterwarnings("ignore::UserWarning")
 def test_materials_of_all_shapes_are_those_of_a_recipe() -> None:
-    tomllib = pytest.importorskip("tomllib", reason="Python 3.11 has it")
-    # Each alone, in pairs, and all.
-    for shapes in [*(dict.fromkeys([a, b]) for a in SHAPES for b in SHAPES), SHAPES]:
-        text = f"material = [{', '.join(shapes)}]\n"
+    rng = random.Random(1)
+    lists = [[any_material(rng, i) for i in range(rng.randint(1, 5))] for _ in range(150)]
+    round_ones = [{"name": f"m {i}", "sigma": 0.1, "gamma": 2.3} for i in range(3)]
+    # All on one line each; one that is not; what the error for other things proposes.
+    lists += [round_ones, [*round_ones, {**round_ones[0], "name": "n" * 120}]]
+    lists += [[{"name": name, "sigma": 0.3, "gamma": 2.5} for name in ("gold", "silver")]]
+    for tables in lists:
+        text = "".join(
+            "[[material]]\n" + "".join(f"{key} = {literal(table[key])}\n" for key in table)
+            for table in tables
+        )
         want = farm.Library(text)
-        (have,) = farm.libraries(tomllib.loads(text)["material"])
+        (have,) = farm.libraries(tables)
         assert have.sets == want.sets, text
         assert [need.id for need in have.needs()] == [need.id for need in want.needs()], text
 
@@ -159,42 +188,29 @@ def test_needs_travel(tmp_path: Path) -> None:
         farm.Need(str(need).replace("numerics ", "numerics 9"))
 
 
-BAD = {"name": "bad", "sigma": 0.3, "gamma": 1.2}
+def test_what_is_wrong_is_said(client: Any, tmp_path: Path) -> None:
+    def says(match: str, scene: Any = None, error: type[Exception] = ValueError, **o: Any) -> None:
+        with pytest.raises(error, match=match):
+            farmed(recipe() if scene is None else scene, client, tmp_path / "out", **o)
 
-
-@pytest.mark.parametrize(("error", "match", "scene", "options"), [
-    (ValueError, "two materials are named", [*materials(2), *materials(1)], {"per_set": 2}),
-    (TypeError, "each material must be a table", ["gold"], {}),
-    (ValueError, "seconds_per_task is 0", RECIPE, {"seconds_per_task": 0}),
-    (ValueError, "retries is -1", RECIPE, {"retries": -1}),
-    (ValueError, r"in \[1, 10000\]", RECIPE, {"per_set": 0}),
-    (ValueError, r"in \[1, 10000\]", [BAD], {"per_set": 2.5}),
-    (TypeError, "and is a dict", BAD, {}),
-    (TypeError, "and is a int", 3, {}),
-    (ValueError, "no materials", [], {}),
-    (ValueError, "^material 'bad': gamma = 1.2 is", [*materials(4), BAD], {"per_set": 2}),
-    (ValueError, "^material 'bad': unknown key", [BAD | {"gamma": 3, "department": "fx"}], {}),
-    (ValueError, "name is None", [{"sigma": 0.3, "gamma": 3.0}], {}),
-    (TypeError, "^material 'bad': sigma: .*'object'", [BAD | {"sigma": object()}], {}),
-    (ValueError, "^material 'bad': masking: .*surrogates", [BAD | {"masking": "\ud800"}], {}),
-    (ValueError, "^material 'bad': sigma: .*limit", [BAD | {"sigma": 10**5000}], {}),
-    # A task that keeps failing.
-    (RuntimeError, "memory", RECIPE, {"max_memory": 1, "retries": 1}),
-])
-def test_what_is_wrong_is_said(
-    client: Any, tmp_path: Path, error: type[Exception], match: str, scene: Any, options: Any
-) -> None:
-    with pytest.raises(error, match=match):
-        farmed(scene, client, tmp_path / "out", **options)
+    says("two materials are named", [*materials(2), *materials(1)], per_set=2)
+    says("each material must be a table", ["gold"], TypeError)
+    says("seconds_per_task is 0", seconds_per_task=0)
+    says("retries is -1", retries=-1)
+    says(r"in \[1, 10000\]", per_set=0)
+    says(r"in \[1, 10000\]", materials(), per_set=2.5)
+    says("and is a dict", {"name": "gold"}, TypeError)
+    says("and is a int", 3, TypeError)
+    says("no materials", [])
+    bad = {"name": "bad", "sigma": 0.3, "gamma": 1.2}
+    says(r"^material \'bad\': gamma = 1.2 is", [*materials(4), bad], per_set=2)
+    says(r"^material \'bad\': unknown key", [{**bad, "gamma": 3, "department": "fx"}])
+    says("name is None", [{"sigma": 0.3, "gamma": 3.0}])
+    says("material \'bad\': sigma is a object", [{**bad, "sigma": object()}], TypeError)
+    says("material \'bad\': masking: .*surrogates", [{**bad, "masking": "\ud800"}])
+    says(r"^material \'bad\': sigma: .*limit", [{**bad, "sigma": 10**5000}])
+    # Nothing was written.
     assert not (tmp_path / "out").exists()
-
-
-def test_workers_of_another_version_are_refused(
-    client: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(farm, "__version__", "0.0.9")
-    with pytest.raises(RuntimeError, match="the worker .* has microfacet .*: install 0.0.9 there"):
-        farmed(RECIPE, client, tmp_path / "out")
 
 
 def test_values_of_numpy_and_none_are_understood(client: Any, tmp_path: Path) -> None:
@@ -211,14 +227,23 @@ def test_values_of_numpy_and_none_are_understood(client: Any, tmp_path: Path) ->
 def test_a_damaged_entry_is_baked_by_workers(
     client: Any, alone: dict[str, bytes], tmp_path: Path
 ) -> None:
-    farmed(RECIPE, client, tmp_path / "out")
+    farmed(recipe(), client, tmp_path / "out")
     entry = max((tmp_path / "cache").glob("*.safetensors"))
     entry.write_bytes(entry.read_bytes()[:200])
-    again = farmed(RECIPE, client, tmp_path / "out")
+    again = farmed(recipe(), client, tmp_path / "out")
     assert (again.baked, again.kept, again.made_up) == (1, COUNT + 1, 0)
     assert content(tmp_path / "out") == alone
 
 
+def test_a_task_that_keeps_failing_ends_the_bake(client: Any, tmp_path: Path) -> None:
+    with pytest.raises(RuntimeError, match="memory"):
+        farmed(recipe(), client, tmp_path / "out", max_memory=1, retries=1)
+    assert not (tmp_path / "out").exists()
+
+
 def test_a_client_without_workers_is_refused(tmp_path: Path) -> None:
-    with cluster(0) as client, pytest.raises(RuntimeError, match="no workers"):
-        farmed(RECIPE, client, tmp_path / "out")
+    with distributed.LocalCluster(
+        n_workers=0, processes=True, dashboard_address=":0"
+    ) as cluster, distributed.Client(cluster) as client:
+        with pytest.raises(RuntimeError, match="no workers"):
+            farmed(recipe(), client, tmp_path / "out")

@@ -3,18 +3,27 @@
 What a library needs are parts that any process can bake by itself (`Need`). `bake` sends them to
 the workers, keeps what they return, and puts the sets together: byte for byte what one machine
 makes. Workers need this package, of the same version, and no files.
+
+>>> from distributed import Client                           # doctest: +SKIP
+>>> import microfacet.farm                                   # doctest: +SKIP
+>>> client = Client("scheduler:8786")                        # doctest: +SKIP
+>>> microfacet.farm.bake("library.toml", client, "library")  # doctest: +SKIP
 """
 
 from __future__ import annotations
 
+import asyncio
 import os
 import re
 import tempfile
 import time
+import uuid
+from collections import deque
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import closing, suppress
+from contextlib import ExitStack, closing, suppress
 from dataclasses import dataclass
-from itertools import islice
+from itertools import compress, islice
+from operator import not_
 from os import PathLike
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
@@ -22,13 +31,11 @@ from typing import Any, Literal, TypeAlias
 from ._microfacet import Assembly, Library, Need, __version__, user_cache
 
 try:
-    import tomli_w
-    from distributed import Client, Future, as_completed
-    from tqdm.auto import tqdm
-except ImportError as missing:
+    from distributed import Client, as_completed, wait
+except ImportError as _missing:
     raise ImportError(
-        f'microfacet.farm needs {missing.name}: pip install "./clients/python[farm]"'
-    ) from missing
+        'microfacet.farm needs Dask: pip install "./clients/python[farm]"'
+    ) from _missing
 
 __all__ = ["Assembly", "Farmed", "Library", "Need", "bake", "libraries"]
 
@@ -37,6 +44,16 @@ Scene: TypeAlias = str | PathLike[str] | Iterable[Mapping[str, Any]]
 
 #: Most materials of one set, and of one step of a list that is read as it goes.
 PER_SET = 10_000
+
+#: A finished table as files: names and contents.
+_Files: TypeAlias = list[tuple[str, bytes]]
+
+_ENTRY = re.compile(r"[0-9a-f]{64}\.safetensors")
+
+#: Tasks that are under way for each thread of the cluster: one at work, the others at hand.
+_AHEAD = 3
+#: Seconds after which the threads of the cluster are counted again.
+_COUNT_AGAIN = 5.0
 
 
 @dataclass(frozen=True)
@@ -104,6 +121,8 @@ def _recipe(tables: list[dict[str, Any]]) -> str:
     As one document, since TOML's ``[[material]]`` and ``material = [{...}]`` do not go together,
     and tomli_w writes either, by the length of the lines.
     """
+    import tomli_w
+
     return tomli_w.dumps({"material": tables})
 
 
@@ -125,9 +144,13 @@ def _table(material: Mapping[str, Any]) -> dict[str, Any]:
         try:
             plain[key] = _plain(value)
             _recipe([{key: plain[key]}]).encode()
-        except (TypeError, ValueError) as why:
-            kind = TypeError if isinstance(why, TypeError) else ValueError
-            raise kind(f"material {name!r}: {key}: {why}") from None
+        except ValueError as why:
+            raise ValueError(f"material {name!r}: {key}: {why}") from None
+        except TypeError:
+            kind = type(value).__name__
+            raise TypeError(
+                f"material {name!r}: {key} is a {kind}: give numbers, texts, lists or tables"
+            ) from None
     return plain
 
 
@@ -164,9 +187,9 @@ def bake(
 
     scene is a path (.toml, .pbrt, .xml, .gltf, .glb, .mtlx), the text of a recipe, or any iterable
     of materials, each a mapping with the keys of a recipe (docs/recipe.md), which is read as it
-    goes: no more than two sets are under way. More than per_set materials, at most 10,000, become
-    numbered sets with an index; ``Tables`` opens both. What is in the folder is replaced as a whole
-    at the end.
+    goes: of a list of any length no more than per_set materials and what is under way are held.
+    More than per_set materials, at most 10,000, become numbered sets with an index; ``Tables``
+    opens both. What is in the folder is replaced as a whole at the end.
 
     Finished tables are kept in the folder cache, by default the user's, so that a bake that ended
     early goes on from there. Workers return them over the network, or with shared=True write them
@@ -184,30 +207,20 @@ def bake(
     if retries < 0:
         raise ValueError(f"retries is {retries}: it must be 0 or more")
     start = time.monotonic()
-    home = cache or user_cache()
-    if home is None:
-        raise ValueError("there is no home for finished tables: name a folder with cache=")
-    folder = Path(home).resolve()
-    folder.mkdir(parents=True, exist_ok=True)
+    folder = _folder(cache)
     _check(client, folder if shared else None)
-    planned = libraries(
-        scene,
-        quality=quality,
-        precision=precision,
-        max_error=max_error,
-        albedo=albedo,
-        tabulate_ggx=tabulate_ggx,
-        per_set=per_set,
-    )
-    options = {
-        "cache": os.fspath(folder) if shared else None,
-        "max_memory": max_memory,
-        "retries": retries,
-    }
     materials = tables = made_up = 0
-    farm = _Farm(client, folder, seconds_per_task, options, progress)
-    with client.as_current(), closing(Assembly(out)) as assembly, closing(farm):
-        for library in farm.ready(planned):
+    options = {
+        "quality": quality,
+        "precision": precision,
+        "max_error": max_error,
+        "albedo": albedo,
+        "tabulate_ggx": tabulate_ggx,
+        "per_set": per_set,
+    }
+    farm = _Farm(client, folder, shared, seconds_per_task, retries, max_memory, progress)
+    with closing(Assembly(out)) as assembly, farm:
+        for library in farm.ready(libraries(scene, **options)):
             count, fresh = assembly.add(library, folder, max_memory)
             materials += sum(map(len, library.sets))
             tables += count
@@ -219,104 +232,187 @@ def bake(
     return Farmed(files, materials, tables, farm.baked, farm.kept, made_up, seconds)
 
 
+def _folder(cache: str | PathLike[str] | None) -> Path:
+    folder = user_cache() if cache is None else os.fspath(cache)
+    if folder is None:
+        raise ValueError("there is no home for finished tables: name a folder with cache=")
+    Path(folder).mkdir(parents=True, exist_ok=True)
+    return Path(folder).resolve()
+
+
 def _check(client: Client, shared: Path | None) -> None:
     """That all workers have this version, and see a shared folder."""
-    workers = client.get_versions(packages=["microfacet"])["workers"]
-    if not workers:
+
+    def version_there() -> str | None:
+        # Sent as it is: a worker that lacks the package could not look it up.
+        try:
+            from microfacet import __version__ as version
+        except ImportError:
+            return None
+        return version
+
+    versions = client.run(version_there)
+    if not versions:
         raise RuntimeError("the client has no workers: start some, such as `dask worker ADDRESS`")
-    for worker, found in workers.items():
-        version = found["packages"]["microfacet"] or "of no version"
+    for worker, version in versions.items():
         if version != __version__:
-            raise RuntimeError(
-                f"the worker {worker} has microfacet {version}: install {__version__} there"
-            )
+            found = f"microfacet {version}" if version else "no package microfacet"
+            raise RuntimeError(f"the worker {worker} has {found}: install {__version__} there")
     if shared is None:
         return
-    with tempfile.NamedTemporaryFile(dir=shared, prefix=".microfacet-farm-") as token:
-        seen = client.run(os.path.exists, token.name)
-    for worker, sees in seen.items():
-        if not sees:
-            raise RuntimeError(
-                f"the worker {worker} does not see {shared}: share that folder, or leave out"
-                " shared=True to have tables sent over the network"
-            )
+    token = shared / f".microfacet-farm-{uuid.uuid4().hex}"
+    token.touch()
+    try:
+        for worker, sees in client.run(os.path.exists, os.fspath(token)).items():
+            if not sees:
+                raise RuntimeError(
+                    f"the worker {worker} does not see {shared}: share that folder, or leave out"
+                    " shared=True to have tables sent over the network"
+                )
+    finally:
+        token.unlink()
 
 
-def _work(texts: list[str], cache: str | None, max_memory: int) -> list[tuple[str, bytes]]:
+def _work(texts: list[str], cache: str | None, max_memory: int) -> _Files:
     """What a worker does: bakes needs on one thread, and returns the files unless it shares them.
 
     A worker runs as many tasks at once as it has threads.
     """
-    with tempfile.TemporaryDirectory(prefix="microfacet-farm-") as own:
+    if cache is not None:
         for text in texts:
-            Need(text).bake(cache or own, 1, max_memory)
-        return [(path.name, path.read_bytes()) for path in Path(own).glob("*.safetensors")]
+            Need(text).bake(Path(cache), 1, max_memory)
+        return []
+    files: _Files = []
+    with tempfile.TemporaryDirectory(prefix="microfacet-farm-") as folder:
+        for text in texts:
+            Need(text).bake(Path(folder), 1, max_memory)
+        for path in sorted(Path(folder).glob("*.safetensors")):
+            files.append((path.name, path.read_bytes()))
+    return files
 
 
 class _Farm:
     """Needs under way on a cluster."""
 
     def __init__(
-        self, client: Client, folder: Path, seconds: float, options: dict[str, Any], progress: bool
+        self,
+        client: Client,
+        folder: Path,
+        shared: bool,
+        seconds: float,
+        retries: int,
+        max_memory: int,
+        progress: bool,
     ) -> None:
-        self.client, self.folder, self.seconds, self.options = client, folder, seconds, options
+        from tqdm.auto import tqdm
+
+        self.client, self.folder, self.shared = client, folder, shared
+        self.seconds, self.retries, self.max_memory = seconds, retries, max_memory
         self.baked = self.kept = 0
         self._seen: set[str] = set()
-        #: The tasks under way, and the number of needs of each.
-        self._under_way: dict[Future, int] = {}
+        # Of this client, whichever is the default.
+        self._done = as_completed(loop=client.loop)
+        self._current = ExitStack()
+        #: The number of needs of each task under way, and the library that it is for.
+        self._under_way: dict[str, tuple[int, int]] = {}
+        #: The number of tasks under way for each library.
+        self._open: dict[int, int] = {}
+        self._threads, self._counted = 0, -_COUNT_AGAIN
         self._bar = tqdm(total=0, unit="part", disable=not progress, dynamic_ncols=True)
 
-    def close(self) -> None:
-        """After an error: what has begun is of no use, what is finished is kept."""
+    def __enter__(self) -> _Farm:
+        self._current.enter_context(self.client.as_current())
+        return self
+
+    def __exit__(self, *_: object) -> None:
         self._bar.close()
+        # After an error: what has begun is of no use, what is finished is kept.
         with suppress(Exception):
-            self.client.cancel(list(self._under_way))
+            self.client.cancel(list(self._done.futures))
+        self._current.close()
 
-    def ready(self, planned: Iterable[Library]) -> Iterator[Library]:
+    def ready(self, all: Iterable[Library]) -> Iterator[Library]:
         """The libraries in order, each as soon as what it needs is kept."""
-        last = None
-        for library in planned:
-            tasks = self._send(library)
+        waiting: deque[tuple[int, Library]] = deque()
+        for number, library in enumerate(all):
+            waiting.append((number, library))
+            for texts in self._tasks(library):
+                self._submit(texts, number)
+                while len(self._under_way) >= self._most():
+                    self._take()
             # One more set is planned while the last is baked.
-            if last:
-                yield self._received(*last)
-            last = library, tasks
-        if last:
-            yield self._received(*last)
+            while len(waiting) > 1:
+                yield self._finished(*waiting.popleft())
+        while waiting:
+            yield self._finished(*waiting.popleft())
 
-    def _send(self, library: Library) -> list[Future]:
-        """Makes tasks of the needs that are neither kept nor under way."""
+    def _finished(self, number: int, library: Library) -> Library:
+        while self._open.get(number, 0):
+            self._take()
+        return library
+
+    def _most(self) -> int:
+        """The number of tasks to have under way; workers come and go."""
+        now = time.monotonic()
+        if now >= self._counted + _COUNT_AGAIN:
+            self._threads = int(sum(self.client.nthreads().values()))
+            self._counted = now
+        return max(_AHEAD * self._threads, 2)
+
+    def _tasks(self, library: Library) -> Iterator[list[str]]:
+        """The needs that are neither kept nor under way, some seconds in each task."""
+        texts: list[str] = []
+        seconds = 0.0
         new = [need for need in library.needs() if need.id not in self._seen]
         self._seen.update(need.id for need in new)
-        missing = [need for need in new if not need.is_kept(self.folder)]
-        kept = len(new) - len(missing)
-        self.kept += kept
+        kept = [need.is_kept(self.folder) for need in new]
+        self.kept += sum(kept)
         # What is kept counts as done, so that the bar shows how far the library is.
         self._bar.total += len(new)
-        self._bar.update(kept)
-        texts: list[list[str]] = []
-        seconds = self.seconds
-        for need in missing:
-            if seconds >= self.seconds:
-                texts.append([])
-                seconds = 0.0
-            texts[-1].append(str(need))
+        self._bar.update(sum(kept))
+        self._bar.refresh()
+        for need in compress(new, map(not_, kept)):
+            texts.append(str(need))
             seconds += need.seconds
-        tasks: list[Future] = self.client.map(_work, texts, pure=False, **self.options)
-        self._under_way |= zip(tasks, map(len, texts), strict=True)
-        return tasks
+            if seconds >= self.seconds:
+                yield texts
+                texts, seconds = [], 0.0
+        if texts:
+            yield texts
 
-    def _received(self, library: Library, tasks: list[Future]) -> Library:
-        """The library, when what its tasks return is kept."""
-        for task in as_completed(tasks):
-            for name, content in task.result():
-                # Renamed, so that nobody reads half of it; what is damaged counts as missing.
-                partial = self.folder / f".microfacet-bake-{task.key}.partial"
-                partial.write_bytes(content)
-                partial.replace(self.folder / name)
-            count = self._under_way.pop(task)
-            # The cluster need not keep it as well.
-            task.release()
-            self.baked += count
-            self._bar.update(count)
-        return library
+    def _submit(self, texts: list[str], number: int) -> None:
+        cache = os.fspath(self.folder) if self.shared else None
+        key = f"microfacet-{uuid.uuid4().hex}"
+        arguments = (texts, cache, self.max_memory)
+        future = self.client.submit(_work, *arguments, key=key, retries=self.retries, pure=False)
+        self._under_way[key] = (len(texts), number)
+        self._open[number] = self._open.get(number, 0) + 1
+        self._done.add(future)
+
+    def _take(self) -> None:
+        """Waits for a task, and keeps what it returns."""
+        while not self._done.has_ready():
+            # Until Python 3.11 they were two.
+            with suppress(TimeoutError, asyncio.TimeoutError):
+                wait(list(self._done.futures), timeout=_COUNT_AGAIN, return_when="FIRST_COMPLETED")
+                break
+            if not self.client.nthreads():
+                self._bar.write("the cluster has no workers: waiting for some")
+        future = next(self._done)
+        for name, content in future.result():
+            self._keep(name, content)
+        count, number = self._under_way.pop(future.key)
+        self._open[number] -= 1
+        self.baked += count
+        self._bar.update(count)
+
+    def _keep(self, name: str, content: bytes) -> None:
+        """Keeps a table; what is damaged counts as missing when it is read."""
+        if not _ENTRY.fullmatch(name):
+            raise RuntimeError(f"a worker returned a file named {name!r}")
+        partial = self.folder / f".microfacet-bake-{uuid.uuid4().hex}.partial"
+        try:
+            partial.write_bytes(content)
+            os.replace(partial, self.folder / name)
+        finally:
+            partial.unlink(missing_ok=True)
