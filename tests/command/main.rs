@@ -56,12 +56,14 @@ fn answer(folder: &Path, line: &str) -> String {
     // Usage has one line.
     let fits = |line: &str| line.chars().count() <= 100 || line.starts_with("Usage: ");
     assert!(out.lines().all(fits), "more than 100 columns: {out}");
-    let out: String = out.lines().map(|line| timeless(line) + "\n").collect();
+    let out: String = marked('>', &out).lines().map(|line| timeless(line) + "\n").collect();
     let status = match output.status.code() {
         Some(0) => String::new(),
-        code => format!("? {}\n", code.unwrap()),
+        Some(code @ (1 | 2)) => format!("? {code}\n"),
+        // A panic, or a signal.
+        other => panic!("{line}: {other:?}: {err}"),
     };
-    marked('>', &out) + &marked('!', &err) + &status
+    out + &marked('!', &err) + &status
 }
 
 /// Errors of the system are worded as Unix has them.

@@ -9,6 +9,7 @@
 //! - `> `, `! ` and `? ` begin what it answered: standard output, standard error, and the exit
 //!   status if that is not 0.
 //!
+//! A heading follows a command, since it would be a line of a file that it followed.
 //! What was answered is compared, all else is input. A difference is printed as a diff;
 //! `SNAPSHOTS=overwrite cargo test` writes the new words in place of the old ones, to be read in
 //! `git diff`.
@@ -20,8 +21,9 @@ use rayon::prelude::*;
 use snapbox::{Assert, Data};
 use tempfile::tempdir;
 
-/// Lines of an answer, each after a mark.
+/// Lines of an answer, each after a mark; the last line of an output ends as well.
 pub(crate) fn marked(mark: char, text: &str) -> String {
+    assert!(text.is_empty() || text.ends_with('\n'), "the last line has no end: {text}");
     let line = |line: &str| format!("{mark} {line}").trim_end().to_owned() + "\n";
     text.lines().map(line).collect()
 }
@@ -33,7 +35,7 @@ fn is_answer(line: &str) -> bool {
 /// The transcript with the answers of today.
 fn replayed(text: &str, answer: impl Fn(&Path, &str) -> String) -> String {
     let mut folder = tempdir().unwrap();
-    let mut told = String::new();
+    let (mut told, mut commands) = (String::new(), 0);
     let mut lines = text.lines().peekable();
     while let Some(line) = lines.next() {
         if is_answer(line) {
@@ -54,11 +56,15 @@ fn replayed(text: &str, answer: impl Fn(&Path, &str) -> String) -> String {
             }
             content.iter().for_each(|line| told += &format!("{line}\n"));
         } else if let Some(command) = line.strip_prefix("$ ") {
+            commands += 1;
             told += &answer(folder.path(), command);
         } else if line.starts_with("# ") {
             folder = tempdir().unwrap();
+        } else {
+            assert!(!line.starts_with(['$', '-']), "neither a command nor a file: {line}");
         }
     }
+    assert!(commands > 0, "no command");
     told
 }
 

@@ -169,18 +169,25 @@ fn answer(folder: &Path, line: &str) -> String {
     let folder = folder.canonicalize().unwrap();
     let name = line.strip_prefix("load ").unwrap();
     let said = match microfacet_scene::load(&folder.join(name)) {
-        Err(why) => marked('!', &why.to_string()),
+        Err(why) => marked('!', &format!("{why}\n")),
         Ok(scene) => {
+            let unknown = scene.ignored.iter().filter(|ignored| !ignored.understood).count();
+            assert_eq!(scene.doubts().count(), scene.warnings.len() + unknown);
             let materials = scene.materials.iter().map(|material| {
                 let used = if material.used { "" } else { "not used: " };
                 let lobe = material.origin.lobe.map_or(String::new(), |lobe| format!("{lobe}: "));
-                let entry = serde_json::to_string(&material.entry()).unwrap();
+                let entry = material.entry();
+                // JSON has null for any number that is not finite: it is γ = ∞.
+                let values = format!("{entry:?}");
+                assert!(!values.contains("NaN") && !values.contains("-inf"), "{values}");
+                let entry = serde_json::to_string(&entry).unwrap();
                 format!("{}: {used}{lobe}{entry}\n", material.origin.place)
             });
             let ignored = scene.ignored.iter().map(|ignored| format!("{ignored}\n"));
             let included = scene.included.iter().map(|it| format!("includes {}\n", it.display()));
+            let warnings: String = scene.warnings.iter().map(|it| format!("{it}\n")).collect();
             let found: String = materials.chain(ignored).chain(included).collect();
-            marked('>', &found) + &marked('!', &scene.warnings.join("\n"))
+            marked('>', &found) + &marked('!', &warnings)
         }
     };
     said.replace(&format!("{}/", folder.display()), "")
