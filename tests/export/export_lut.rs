@@ -124,8 +124,9 @@ fn array(path: &Path, kind: &str) -> (Vec<usize>, Vec<u8>) {
     let start = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': (");
     let text = str::from_utf8(text).unwrap().strip_prefix(&start).unwrap();
     let (shape, padding) = text.split_once("), }").unwrap();
+    assert!(!shape.ends_with(' '), "{shape}");
     assert_eq!(padding.trim_start_matches(' '), "\n");
-    let edges = shape.split_terminator(", ").map(|edge| edge.parse().unwrap());
+    let edges = shape.trim_end_matches(',').split(", ").map(|edge| edge.parse().unwrap());
     (edges.collect(), values.to_vec())
 }
 

@@ -30,7 +30,7 @@ pub use tone::srgb;
 /// Pictures of lobes, one of which replaces the sphere where there is no WebGL 2. With 96 samples
 /// the page of the default set takes a third longer, and the noise is four fifths as large.
 const PICTURE: Film = Film { size: 240, samples: SAMPLES, seed: 1 };
-/// Percent of JPEG: the least without coarser colours.
+/// Quality of JPEG, below which the encoder halves the resolution of colours.
 const QUALITY: u8 = 90;
 /// Pictures take most of the time of a page; unit tests check none.
 const SAMPLES: u32 = if cfg!(test) { 3 } else { 64 };

@@ -1,9 +1,10 @@
 //! Pixels of PNG, JPEG and OpenEXR, within limits.
 
 use std::fmt::Display;
-use std::io::Cursor;
+use std::io::{self, Cursor};
 
 use exr::prelude::{ReadChannels, ReadLayers, Text, Vec2};
+use zune_jpeg::errors::DecodeErrors;
 use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
@@ -19,9 +20,9 @@ pub(super) struct Pixels {
 
 /// Samples of all pixels.
 pub(super) enum Samples {
-    /// Of 1 at 255.
+    /// 255 stands for 1.
     Eight(Vec<u8>),
-    /// Of 1 at 65535, big-endian.
+    /// 65535 stands for 1; big-endian.
     Sixteen(Vec<u8>),
     /// As they are.
     Floats(Vec<f32>),
@@ -43,6 +44,10 @@ fn undecoded(why: impl Display) -> String {
     format!("cannot be decoded ({why})")
 }
 
+fn unread(why: io::Error) -> String {
+    format!("is not read ({why})")
+}
+
 /// Refuses what takes more memory than an image or all of them may; else how many samples it has.
 fn samples(
     [width, height]: [usize; 2],
@@ -58,7 +63,7 @@ fn samples(
             limits::IMAGE >> 20
         ));
     }
-    charge(left, size).map_err(|why| format!("is not read ({why})"))?;
+    charge(left, size).map_err(unread)?;
     Ok(width * height * stride)
 }
 
@@ -71,6 +76,8 @@ fn png(bytes: &[u8], left: &Budget) -> Result<Pixels, String> {
     decoder.set_ignore_iccp_chunk(true);
     // Palettes become colours, a colour that is transparent an opacity, and fewer bits eight.
     decoder.set_transformations(png::Transformations::EXPAND);
+    let (width, height) = decoder.read_header_info().map_err(undecoded)?.size();
+    samples([width, height].map(|edge| edge as usize), 1, 1, &Budget::new(u64::MAX))?;
     let mut reader = decoder.read_info().map_err(undecoded)?;
     let (width, height) = reader.info().size();
     let (color, depth) = reader.output_color_type();
@@ -85,7 +92,10 @@ fn png(bytes: &[u8], left: &Budget) -> Result<Pixels, String> {
 
 /// Grey stays grey; all else, CMYK included, becomes red, green and blue.
 fn jpeg(bytes: &[u8], left: &Budget) -> Result<Pixels, String> {
-    let undecoded = |why| undecoded(format!("JPEG: {why}"));
+    // Some messages of the codec are in quotes and end in a line break.
+    let undecoded = |why: DecodeErrors| {
+        undecoded(format!("JPEG: {}", why.to_string().trim_matches(['"', '\n'])))
+    };
     // Neither dimension of a JPEG exceeds 65535; memory is limited below. Not strict, it takes what
     // is missing at the end of a file for grey, as viewers do.
     let options = DecoderOptions::default()
@@ -122,6 +132,21 @@ fn exr(bytes: &[u8], left: &Budget) -> Result<Pixels, String> {
     let Vec2(width, height) = window.size;
     let offset = part.own_attributes.layer_position - window.position;
     let count = samples([width, height], stride, 4, left)?;
+    // Blocks are decoded whole: all channels of the data window, however large the display window.
+    let bytes = |Vec2(columns, lines): Vec2<usize>| {
+        let pixels = (columns as u64).saturating_mul(lines as u64);
+        pixels.saturating_mul(part.channels.bytes_per_pixel as u64)
+    };
+    let block = part.max_block_pixel_size();
+    if bytes(block) > limits::IMAGE {
+        return Err(format!(
+            "has blocks of {} x {} pixels, which take more than {} MiB to decode",
+            block.x(),
+            block.y(),
+            limits::IMAGE >> 20
+        ));
+    }
+    charge(left, bytes(part.layer_size)).map_err(unread)?;
     let image = exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()

@@ -2,7 +2,9 @@
 
 use std::io::Cursor;
 
-use exr::prelude::{Image, IntegerBounds, SpecificChannels, Vec2, WritableImage};
+use exr::prelude::{
+    Blocks, Image, IntegerBounds, Layer, LayerAttributes, SpecificChannels, Vec2, WritableImage,
+};
 use png::{BitDepth, ColorType};
 
 use super::*;
@@ -170,4 +172,17 @@ fn the_size_of_an_image_is_known_before_it_is_decoded() {
         let error = read(bytes, Channel::Red, Encoding::Linear).unwrap_err();
         assert_eq!(error, format!("has {size} pixels, which take more than 512 MiB to decode"));
     }
+}
+
+#[test]
+fn blocks_of_an_openexr_image_are_decoded_within_the_limit() {
+    let mut exr = Cursor::new(Vec::new());
+    let pixel = SpecificChannels::rgb(|_| (0.0_f32, 0.0_f32, 0.0_f32));
+    let blocks = Blocks::Tiles(Vec2(8192, 8192));
+    let tiles = exr::prelude::Encoding { blocks, ..exr::prelude::Encoding::UNCOMPRESSED };
+    let layer = Layer::new((1, 1), LayerAttributes::default(), tiles, pixel);
+    Image::from_layer(layer).write().to_buffered(&mut exr).unwrap();
+    let error = read(exr.get_ref(), Channel::Red, Encoding::Linear).unwrap_err();
+    let size = "has blocks of 8192 x 8192 pixels, which take more than 512 MiB to decode";
+    assert_eq!(error, size);
 }

@@ -11,7 +11,9 @@ const ALIGNMENT: usize = 64;
 pub(super) fn encode(texture: &Texture) -> Vec<u8> {
     let channels = texture.spec.channels.len();
     let edges = texture.size().into_iter().chain((channels > 1).then_some(channels));
-    let shape: String = edges.map(|edge| format!("{edge}, ")).collect();
+    let edges: Vec<String> = edges.map(|edge| edge.to_string()).collect();
+    // A tuple of one has a comma as well.
+    let shape = if let [edge] = &edges[..] { format!("{edge},") } else { edges.join(", ") };
     let kind = if texture.half { "<f2" } else { "<f4" };
     let header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({shape}), }}");
     let length = (HEAD + header.len() + 1).next_multiple_of(ALIGNMENT) - HEAD;
