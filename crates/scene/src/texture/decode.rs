@@ -48,23 +48,27 @@ fn unread(why: io::Error) -> String {
     format!("is not read ({why})")
 }
 
-/// Refuses what takes more memory than an image or all of them may; else how many samples it has.
-fn samples(
-    [width, height]: [usize; 2],
-    stride: usize,
-    bytes: usize,
-    left: &Budget,
-) -> Result<usize, String> {
-    let pixel = (stride * bytes) as u64;
-    let size = (width as u64).saturating_mul(height as u64).saturating_mul(pixel);
-    if size > limits::IMAGE {
+/// The bytes of so many pixels; the largest number where they would overflow it.
+fn memory([width, height]: [usize; 2], pixel: usize) -> u64 {
+    (width as u64).saturating_mul(height as u64).saturating_mul(pixel as u64)
+}
+
+/// Refuses pixels that take more memory than one image may; `what` precedes their number.
+fn limited(what: &str, size: [usize; 2], pixel: usize) -> Result<u64, String> {
+    let bytes = memory(size, pixel);
+    if bytes > limits::IMAGE {
+        let ([width, height], limit) = (size, limits::IMAGE >> 20);
         return Err(format!(
-            "has {width} x {height} pixels, which take more than {} MiB to decode",
-            limits::IMAGE >> 20
+            "has {what}{width} x {height} pixels, which take more than {limit} MiB to decode"
         ));
     }
-    charge(left, size).map_err(unread)?;
-    Ok(width * height * stride)
+    Ok(bytes)
+}
+
+/// The number of samples of an image, whose memory is limited and taken from the scene's.
+fn samples(size: [usize; 2], stride: usize, bytes: usize, left: &Budget) -> Result<usize, String> {
+    charge(left, limited("", size, stride * bytes)?).map_err(unread)?;
+    Ok(size[0] * size[1] * stride)
 }
 
 /// The image itself, without colour management. Of an animation it is the first picture.
@@ -77,12 +81,12 @@ fn png(bytes: &[u8], left: &Budget) -> Result<Pixels, String> {
     // Palettes become colours, a colour that is transparent an opacity, and fewer bits eight.
     decoder.set_transformations(png::Transformations::EXPAND);
     let (width, height) = decoder.read_header_info().map_err(undecoded)?.size();
-    samples([width, height].map(|edge| edge as usize), 1, 1, &Budget::new(u64::MAX))?;
+    let size = [width, height].map(|edge| edge as usize);
+    // The decoder's own limit, which comes next, states no size.
+    limited("", size, 1)?;
     let mut reader = decoder.read_info().map_err(undecoded)?;
-    let (width, height) = reader.info().size();
     let (color, depth) = reader.output_color_type();
     let (stride, deep) = (color.samples(), depth == png::BitDepth::Sixteen);
-    let size = [width, height].map(|edge| edge as usize);
     let count = samples(size, stride, if deep { 2 } else { 1 }, left)?;
     let mut samples = vec![0; if deep { 2 * count } else { count }];
     reader.next_frame(&mut samples).map_err(undecoded)?;
@@ -133,20 +137,10 @@ fn exr(bytes: &[u8], left: &Budget) -> Result<Pixels, String> {
     let offset = part.own_attributes.layer_position - window.position;
     let count = samples([width, height], stride, 4, left)?;
     // Blocks are decoded whole: all channels of the data window, however large the display window.
-    let bytes = |Vec2(columns, lines): Vec2<usize>| {
-        let pixels = (columns as u64).saturating_mul(lines as u64);
-        pixels.saturating_mul(part.channels.bytes_per_pixel as u64)
-    };
-    let block = part.max_block_pixel_size();
-    if bytes(block) > limits::IMAGE {
-        return Err(format!(
-            "has blocks of {} x {} pixels, which take more than {} MiB to decode",
-            block.x(),
-            block.y(),
-            limits::IMAGE >> 20
-        ));
-    }
-    charge(left, bytes(part.layer_size)).map_err(unread)?;
+    let pixel = part.channels.bytes_per_pixel;
+    let [block, data] = [part.max_block_pixel_size(), part.layer_size].map(|Vec2(x, y)| [x, y]);
+    limited("blocks of ", block, pixel)?;
+    charge(left, memory(data, pixel)).map_err(unread)?;
     let image = exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()

@@ -3,15 +3,16 @@
 use super::{bytes, extent, is_volume};
 use crate::texture::Texture;
 
-/// Its kind, height, width and format are stated.
+/// DDSD_CAPS, DDSD_HEIGHT, DDSD_WIDTH and DDSD_PIXELFORMAT.
 const STATED: u32 = 0x1 | 0x2 | 0x4 | 0x1000;
-/// Bytes of a row are stated.
+/// DDSD_PITCH: bytes of a row.
 const PITCH: u32 = 0x8;
-/// Slices are stated.
+/// DDSD_DEPTH: the number of slices.
 const DEPTH: u32 = 0x80_0000;
-/// Of the pixels: a code of four letters says more, and the size of an uncompressed one is stated.
+/// DDPF_FOURCC, since the format is in the header of Direct3D 10, and DDPF_RGB, which states the
+/// bits of a pixel.
 const CODE: u32 = 0x4 | 0x40;
-/// What the surface is: a texture, of several parts, a volume.
+/// DDSCAPS_TEXTURE, and of a volume DDSCAPS_COMPLEX and DDSCAPS2_VOLUME.
 const TEXTURE: u32 = 0x1000;
 const COMPLEX: u32 = 0x8;
 const VOLUME: u32 = 0x20_0000;
