@@ -6,7 +6,7 @@ use microfacet_model::ParameterError;
 
 use super::axis::{AXES, Place, TexelAxis, coordinates, place};
 use super::fit::{Filter, Tap};
-use super::truth::{Channel, Truth, truths};
+use super::truth::{Channel, FINEST, Truth, truths};
 use super::{Texture, TextureSpec};
 
 /// Points of a certificate for each texel, and the fewest and the most of them.
@@ -63,7 +63,7 @@ pub fn known(
     stage: &Stage,
 ) -> Result<Vec<Known>, ParameterError> {
     let gammas = places.iter().map(|place| place.gamma);
-    let truths = truths(gammas, places.len(), |i| places[i], masking, stage)?;
+    let truths = truths(gammas, places.len(), |i| places[i], masking, FINEST, stage)?;
     Ok(places.iter().zip(truths).map(|(&place, truth)| Known { place, truth }).collect())
 }
 
@@ -132,8 +132,11 @@ impl Checks {
             places.push(place);
             taps.push(filter.tap(axes, &at));
         }
-        let known = known(&places, spec.masking, stage)?;
-        Ok(Self { filter, points: known.into_iter().zip(taps).collect() })
+        let gammas = places.iter().map(|place| place.gamma);
+        let (count, tolerance) = (places.len(), spec.tolerance());
+        let truths = truths(gammas, count, |i| places[i], spec.masking, tolerance, stage)?;
+        let known = places.into_iter().zip(truths).map(|(place, truth)| Known { place, truth });
+        Ok(Self { filter, points: known.zip(taps).collect() })
     }
 
     /// Checks at places whose albedos are known.

@@ -34,7 +34,7 @@ pub use truth::{Channel, Truth};
 pub use axis::place;
 use axis::{AXES, coordinates};
 use fit::{Filter, Target, fit};
-use truth::truths;
+use truth::{FINEST, truths};
 
 /// The fewest and the most texels along an axis.
 pub const SIZES: [usize; 2] = [4, 4096];
@@ -174,6 +174,13 @@ impl TextureSpec {
         SECONDS[usize::from(!self.is_directional())] * texels * (points + 1.0)
     }
 
+    /// Error of the model's values: at the texels the finest, and between them a five-hundredth of
+    /// what a linear filter errs for γ = ∞.
+    fn tolerance(&self) -> f64 {
+        let longest = self.axes.iter().map(TexelAxis::len).max().unwrap_or(1);
+        if self.fitted { (1e-2 / (longest * longest) as f64).clamp(FINEST, 1e-5) } else { FINEST }
+    }
+
     fn per_cell(&self) -> usize {
         match self.axes.len() {
             _ if !self.is_directional() => PER_AVERAGE_CELL,
@@ -190,7 +197,14 @@ impl TextureSpec {
         let planes: Vec<Vec<f32>> = if self.fitted {
             let points = self.points();
             let gammas = points.iter().map(|(_, place)| place.gamma);
-            let truths = truths(gammas, points.len(), |i| points[i].1, self.masking, stage)?;
+            let truths = truths(
+                gammas,
+                points.len(),
+                |i| points[i].1,
+                self.masking,
+                self.tolerance(),
+                stage,
+            )?;
             let filter = Filter::new(&self.axes);
             let target = |(at, place): &([f64; AXES], Place)| Target {
                 tap: filter.tap(&self.axes, at),
@@ -212,7 +226,14 @@ impl TextureSpec {
                 let of = |&c: &f64| place(from_ref(axis), self.gamma, &[c]).gamma;
                 coordinates.iter().map(of).collect()
             });
-            let truths = truths(gammas.into_iter(), texels.len(), at, self.masking, stage)?;
+            let truths = truths(
+                gammas.into_iter(),
+                texels.len(),
+                at,
+                self.masking,
+                self.tolerance(),
+                stage,
+            )?;
             let plane = |channel: &Channel| truths.iter().map(|&t| channel.of(t) as f32).collect();
             self.channels.iter().map(plane).collect()
         };

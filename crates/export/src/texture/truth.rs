@@ -12,9 +12,10 @@ use rayon::prelude::*;
 
 use super::axis::Place;
 
-/// Error of albedos and of averages that the quadrature aims at.
-const TOLERANCE: f64 = 1e-7;
-const AVERAGE_TOLERANCE: f64 = 3e-6;
+/// The smallest error of albedos that the quadrature aims at, and that of averages, which err by
+/// 1e-7 then.
+pub(super) const FINEST: f64 = 1e-7;
+const AVERAGE_TOLERANCE: f64 = 3e-5;
 
 /// What a channel of a texture holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -78,16 +79,18 @@ pub struct Truth {
 }
 
 /// The albedos of `count` places with the shapes `gammas`, each a step of the stage; either all
-/// have a view or all are averages. Places are computed when used: a large texture has 2²⁴.
+/// have a view, and are found to `tolerance`, or all are averages. Places are computed when used: a
+/// large texture has 2²⁴.
 pub(super) fn truths(
     gammas: impl Iterator<Item = f64>,
     count: usize,
     place: impl Fn(usize) -> Place + Sync,
     masking: Masking,
+    tolerance: f64,
     stage: &Stage,
 ) -> Result<Vec<Truth>, ParameterError> {
     let average = count > 0 && place(0).cos.is_none();
-    let tolerance = if average { AVERAGE_TOLERANCE } else { TOLERANCE };
+    let tolerance = if average { AVERAGE_TOLERANCE } else { tolerance };
     let gammas: HashSet<u64> = gammas.map(f64::to_bits).collect();
     let prepare = |gamma| {
         let shape = Shape::new(f64::from_bits(gamma))?;
