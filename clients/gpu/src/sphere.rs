@@ -2,6 +2,8 @@
 //! random numbers, the same steps.
 
 use std::f32::consts::TAU;
+use std::fs::File;
+use std::io::BufWriter;
 use std::path::Path;
 
 use bytemuck::{Pod, Zeroable};
@@ -54,8 +56,7 @@ pub fn agrees(gpu: &Gpu, export: &Export, path: &Path) -> bool {
     let worst = shader.iter().zip(&crate_s).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(255);
     let differ = shader.iter().zip(&crate_s).filter(|(a, b)| a != b).count();
 
-    image::save_buffer(path, &shader, scene.size, scene.size, image::ColorType::Rgb8)
-        .expect("the picture is written");
+    save(path, scene.size, &shader).expect("the picture is written");
     let mean = shader.iter().map(|&x| f64::from(x)).sum::<f64>() / shader.len() as f64;
     println!(
         "the sphere: at most {worst}/255 from that of the crate's BSDF, of {ALLOWED}/255 allowed; \
@@ -64,6 +65,13 @@ pub fn agrees(gpu: &Gpu, export: &Export, path: &Path) -> bool {
     );
     // A black picture would agree with any other.
     worst <= ALLOWED && (20.0..235.0).contains(&mean)
+}
+
+/// Writes a square picture of sRGB.
+fn save(path: &Path, size: u32, pixels: &[u8]) -> Result<(), png::EncodingError> {
+    let mut encoder = png::Encoder::new(BufWriter::new(File::create(path)?), size, size);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.write_header()?.write_image_data(pixels)
 }
 
 /// A number as a byte of sRGB.
