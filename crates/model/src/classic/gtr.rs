@@ -16,6 +16,7 @@ use crate::student_t::StudentT;
 pub struct Gtr {
     c: f64,
     gamma: f64,
+    peak: f64,
 }
 
 impl Gtr {
@@ -26,7 +27,8 @@ impl Gtr {
     pub fn new(c: f64, gamma: f64) -> Result<Self, ClassicError> {
         check(c > 0.0 && c <= 1.0, "c", c, "(0, 1]")?;
         check(gamma > 0.0 && gamma < f64::INFINITY, "gamma", gamma, "(0, inf)")?;
-        Ok(Self { c, gamma })
+        let gtr = Self { c, gamma, peak: 0.0 };
+        Ok(Self { peak: 1.0 / (PI * gtr.integral(1.0)), ..gtr })
     }
 
     /// b = 1/C² − 1, so that 1 + (C² − 1) cos²θ = C² (1 + b sin²θ): no cancellation near the peak.
@@ -49,7 +51,7 @@ impl Gtr {
 
 impl Isotropic for Gtr {
     fn peak(&self) -> f64 {
-        1.0 / (PI * self.integral(1.0))
+        self.peak
     }
 
     fn relative_d(&self, theta: f64) -> f64 {

@@ -19,6 +19,17 @@ pub struct Marginal<'a> {
     sigma: f64,
     /// Largest unit slope; ∞ where normals reach the horizon.
     reach: f64,
+    nodes: Vec<Node>,
+}
+
+/// A node of the double exponential rule: u = π/2 sinh t, t in even steps.
+struct Node {
+    u: f64,
+    /// The step of u.
+    du: f64,
+    exp_u: f64,
+    /// exp(−2|u|).
+    decay: f64,
 }
 
 /// Integrals of the marginal p beyond a slope x ≥ 0.
@@ -42,7 +53,12 @@ impl<'a> Marginal<'a> {
         // A support that ends within rounding of the horizon (tan negative or huge) is the whole
         // hemisphere.
         let reach = if (0.0..1e6).contains(&reach) { reach } else { f64::INFINITY };
-        Self { d, sigma, reach }
+        let node = |i: i32| {
+            let t = f64::from(i) * STEP;
+            let (u, du) = (FRAC_PI_2 * libm::sinh(t), FRAC_PI_2 * libm::cosh(t) * STEP);
+            Node { u, du, exp_u: libm::exp(u), decay: libm::exp(-2.0 * u.abs()) }
+        };
+        Self { d, sigma, reach, nodes: (-NODES..=NODES).map(node).collect() }
     }
 
     /// The scale σ.
@@ -91,17 +107,14 @@ impl<'a> Marginal<'a> {
             f64::INFINITY
         };
         let scale = (1.0 + x * x + from * from).sqrt();
-        for i in -NODES..=NODES {
-            let t = f64::from(i) * STEP;
-            let (u, du) = (FRAC_PI_2 * libm::sinh(t), FRAC_PI_2 * libm::cosh(t) * STEP);
+        for &Node { u, du, exp_u, decay: e } in &self.nodes {
             if whole.is_finite() {
                 // tanh on [from, from + whole].
-                let e = libm::exp(-2.0 * u.abs());
                 let near = whole * e / (1.0 + e);
                 let y = if u < 0.0 { from + near } else { from + (whole - near) };
                 add(y, whole * 2.0 * e / ((1.0 + e) * (1.0 + e)) * du);
             } else {
-                let y = scale * libm::exp(u);
+                let y = scale * exp_u;
                 if y < 1e30 {
                     add(from + y, y * du);
                 }
