@@ -154,8 +154,8 @@ pub(crate) fn normals_work(spec: &TableSpec) -> [f64; 2] {
 const OF_DISTRIBUTIONS: [f64; 2] = [45.0, 20.0];
 
 /// Factors of [`OF_DISTRIBUTIONS`] for the longest tails, those of GTR, and for those of Gauss.
-const OF_LONG_TAILS: f64 = 1.9;
-const OF_SHORT_TAILS: f64 = 1.25;
+const OF_LONG_TAILS: f64 = 0.85;
+const OF_SHORT_TAILS: f64 = 0.55;
 
 /// Whether D has long tails, or may have them.
 fn has_long_tails(distribution: &Distribution) -> bool {
@@ -215,7 +215,7 @@ fn of_albedos(spec: &AlbedoSpec) -> [f64; 2] {
         LobeForm::Ellipsoid => [1700.0 * (1.0 + 8.0 * s.min(0.5)), 1.5],
         LobeForm::Distribution => {
             let has_long_tails = lobe.distribution.as_ref().is_some_and(has_long_tails);
-            [if has_long_tails { 900.0 } else { 250.0 }, 0.15]
+            [if has_long_tails { 600.0 } else { 200.0 }, 0.15]
         }
     }
 }
