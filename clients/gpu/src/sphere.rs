@@ -67,11 +67,14 @@ pub fn agrees(gpu: &Gpu, export: &Export, path: &Path) -> bool {
     worst <= ALLOWED && (20.0..235.0).contains(&mean)
 }
 
-/// Writes a square picture of sRGB.
+/// Writes a square picture whose pixels are in sRGB.
 fn save(path: &Path, size: u32, pixels: &[u8]) -> Result<(), png::EncodingError> {
     let mut encoder = png::Encoder::new(BufWriter::new(File::create(path)?), size, size);
     encoder.set_color(png::ColorType::Rgb);
-    encoder.write_header()?.write_image_data(pixels)
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(pixels)?;
+    writer.finish()
 }
 
 /// A number as a byte of sRGB.

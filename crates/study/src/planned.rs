@@ -19,7 +19,7 @@ use crate::Outcome;
 
 /// Materials by name, each a set of its own: all kinds of tables, and the extremes of what their
 /// times depend on.
-const SETS: [(&str, &str); 13] = [
+const SETS: [(&str, &str); 14] = [
     ("a glass", "sigma = 0.454\ngamma = 3\nfresnel = \"mirror\""),
     ("a dielectric", "sigma = 0.3\ngamma = 2.5\nfresnel = { dielectric = 1.5 }"),
     ("the same, heavy", "sigma = 0.3\ngamma = 1.52\nfresnel = { dielectric = 1.5 }"),
@@ -32,6 +32,7 @@ const SETS: [(&str, &str); 13] = [
         "sigma = { min = 0.1, max = 0.5 }\ngamma = { min = 2, max = 4 }\nfresnel = \"mirror\"",
     ),
     ("GTR", "distribution = \"gtr\"\nc = 0.2\ngamma = 1.5\nfresnel = \"mirror\""),
+    ("Sawicki", "distribution = \"sawicki\"\nn = 12\nfresnel = \"mirror\""),
     ("Gauss", "distribution = \"gauss\"\nm = 0.2\nfresnel = \"mirror\""),
     (
         "tilted Beckmann",

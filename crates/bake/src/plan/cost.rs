@@ -150,12 +150,11 @@ pub(crate) fn normals_work(spec: &TableSpec) -> [f64; 2] {
 }
 
 /// Microseconds for a node of either slope table of a distribution outside the family (the other
-/// tables are far smaller), and for a normal of its certificate.
-const OF_DISTRIBUTIONS: [f64; 2] = [45.0, 20.0];
+/// tables are far smaller), and for a normal of its certificate, for GTR.
+const OF_DISTRIBUTIONS: [f64; 2] = [38.0, 17.0];
 
-/// Factors of [`OF_DISTRIBUTIONS`] for the longest tails, those of GTR, and for those of Gauss.
-const OF_LONG_TAILS: f64 = 0.85;
-const OF_SHORT_TAILS: f64 = 0.55;
+/// Factor of [`OF_DISTRIBUTIONS`] for the short tails of Gauss.
+const OF_SHORT_TAILS: f64 = 0.65;
 
 /// Whether D has long tails, or may have them.
 fn has_long_tails(distribution: &Distribution) -> bool {
@@ -165,7 +164,7 @@ fn has_long_tails(distribution: &Distribution) -> bool {
 
 /// Seconds of one thread to bake the four tables of a distribution, and to certify them.
 pub(crate) fn radial_work(distribution: &Distribution, level: Level) -> [f64; 2] {
-    let scale = if has_long_tails(distribution) { OF_LONG_TAILS } else { OF_SHORT_TAILS };
+    let scale = if has_long_tails(distribution) { 1.0 } else { OF_SHORT_TAILS };
     let nodes = |(_, axes): &(Kind, Vec<Axis>)| match &axes[..] {
         [first, last] => first.len() * last.len(),
         _ => 0,
@@ -178,7 +177,7 @@ pub(crate) fn radial_work(distribution: &Distribution, level: Level) -> [f64; 2]
 /// Seconds of one thread to measure the error of a table at one point, for the shapes or
 /// distributions that take longest. Not for directional albedos.
 pub fn point_seconds(table: &Table) -> f64 {
-    let of_distributions = 1e-6 * OF_LONG_TAILS * OF_DISTRIBUTIONS[1];
+    let of_distributions = 1e-6 * OF_DISTRIBUTIONS[1];
     match table.kind {
         // Two lookups, one of which integrates over the views.
         Kind::AlbedoAverage => 40e-6,

@@ -63,7 +63,9 @@ pub fn known(
     stage: &Stage,
 ) -> Result<Vec<Known>, ParameterError> {
     let gammas = places.iter().map(|place| place.gamma);
-    let truths = truths(gammas, places.len(), |i| places[i], masking, FINEST, stage)?;
+    let average = places.first().is_some_and(|place| place.cos.is_none());
+    let finest = FINEST[usize::from(average)];
+    let truths = truths(gammas, places.len(), |i| places[i], masking, finest, stage)?;
     Ok(places.iter().zip(truths).map(|(&place, truth)| Known { place, truth }).collect())
 }
 
