@@ -84,6 +84,7 @@ pub fn run(arguments: &[String]) -> Outcome {
     let pixels = picture(&set, &look, Film { size, samples, seed: 0 })?;
     let mut encoder = png::Encoder::new(BufWriter::new(File::create(out)?), size, size);
     encoder.set_color(png::ColorType::Rgb);
-    encoder.write_header()?.write_image_data(pixels.as_flattened())?;
-    Ok(())
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(pixels.as_flattened())?;
+    Ok(writer.finish()?)
 }
