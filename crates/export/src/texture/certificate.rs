@@ -135,8 +135,7 @@ impl Checks {
             taps.push(filter.tap(axes, &at));
         }
         let gammas = places.iter().map(|place| place.gamma);
-        let (count, tolerance) = (places.len(), spec.tolerance());
-        let truths = truths(gammas, count, |i| places[i], spec.masking, tolerance, stage)?;
+        let truths = spec.truths(gammas, places.len(), |i| places[i], stage)?;
         let known = places.into_iter().zip(truths).map(|(place, truth)| Known { place, truth });
         Ok(Self { filter, points: known.zip(taps).collect() })
     }

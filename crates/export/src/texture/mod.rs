@@ -174,10 +174,9 @@ impl TextureSpec {
         SECONDS[usize::from(!self.is_directional())] * texels * (points + 1.0)
     }
 
-    /// Error of the model's values that the quadrature aims at: the finest where texels hold them;
-    /// of textures of n texels along their longest axis that are fitted, and by which these are
-    /// judged, 1e-2/n², and of averages 3e-2/n². Those of GGX up to σ = 1 err by 0.6/n² and by
-    /// 0.16/n².
+    /// The error that the model's values aim at: the finest where they are the texels. Where texels
+    /// are fitted to them, or judged by them, 1e-2/n² and of averages 3e-2/n², with n texels along
+    /// the longest axis: even those of GGX up to σ = 1 err by 0.6/n², and by 0.16/n².
     fn tolerance(&self) -> f64 {
         let average = usize::from(!self.is_directional());
         let longest = self.axes.iter().map(TexelAxis::len).max().unwrap_or(1);
@@ -187,6 +186,17 @@ impl TextureSpec {
         } else {
             FINEST[average]
         }
+    }
+
+    /// The model's values at places, as [`truths`].
+    fn truths(
+        &self,
+        gammas: impl Iterator<Item = f64>,
+        count: usize,
+        place: impl Fn(usize) -> Place + Sync,
+        stage: &Stage,
+    ) -> Result<Vec<Truth>, ParameterError> {
+        truths(gammas, count, place, self.masking, self.tolerance(), stage)
     }
 
     fn per_cell(&self) -> usize {
@@ -205,14 +215,7 @@ impl TextureSpec {
         let planes: Vec<Vec<f32>> = if self.fitted {
             let points = self.points();
             let gammas = points.iter().map(|(_, place)| place.gamma);
-            let truths = truths(
-                gammas,
-                points.len(),
-                |i| points[i].1,
-                self.masking,
-                self.tolerance(),
-                stage,
-            )?;
+            let truths = self.truths(gammas, points.len(), |i| points[i].1, stage)?;
             let filter = Filter::new(&self.axes);
             let target = |(at, place): &([f64; AXES], Place)| Target {
                 tap: filter.tap(&self.axes, at),
@@ -234,14 +237,7 @@ impl TextureSpec {
                 let of = |&c: &f64| place(from_ref(axis), self.gamma, &[c]).gamma;
                 coordinates.iter().map(of).collect()
             });
-            let truths = truths(
-                gammas.into_iter(),
-                texels.len(),
-                at,
-                self.masking,
-                self.tolerance(),
-                stage,
-            )?;
+            let truths = self.truths(gammas.into_iter(), texels.len(), at, stage)?;
             let plane = |channel: &Channel| truths.iter().map(|&t| channel.of(t) as f32).collect();
             self.channels.iter().map(plane).collect()
         };
