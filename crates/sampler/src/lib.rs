@@ -160,6 +160,7 @@ mod elementary;
 mod error;
 mod material;
 mod tables;
+mod vector;
 
 // Callers need these in the version that this crate is built with.
 pub use glam;

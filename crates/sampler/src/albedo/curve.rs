@@ -14,6 +14,7 @@ use microfacet_tables::{Interval, Kind, Mapping, Reflectance, Table, Weights};
 use super::average::{At, add, over_views};
 use super::elevation::Elevation;
 use crate::error::MaterialError;
+use crate::vector::vec3;
 
 /// The largest number of channels of an albedo table.
 const CHANNELS: usize = 4;
@@ -116,7 +117,8 @@ impl<const N: usize> ViewCurve<N> {
     /// is replaced by the grazing view of its azimuth; only lobes that are not round depend on the
     /// azimuth. Closer to grazing than the table's first view, μ₀ of
     /// [`ViewBlend`](microfacet_tables::axis::ViewBlend), albedos are held constant.
-    pub fn eval(&self, v: Vec3) -> [f32; N] {
+    pub fn eval(&self, v: impl Into<[f32; 3]>) -> [f32; N] {
+        let v = vec3(v);
         let cos = unit(v.z);
         self.0.with_view(v, |rows, view| self.at(rows, view, cos))
     }

@@ -9,6 +9,7 @@ use super::curve::{Curve, MaterialPoint, Rows, missing};
 use super::elevation::Elevation;
 use super::moments::{Moments, below, less_mirror};
 use crate::error::MaterialError;
+use crate::vector::vec3;
 
 /// The directional albedo of one material as a function of the view, with F = 1 and as moments of
 /// Fresnel weights.
@@ -55,19 +56,20 @@ impl Albedo {
     }
 
     /// Moments of the Fresnel weights at a view, each in [0, 1], with a total of at most 1.
-    pub fn moments(&self, v: Vec3) -> Moments {
+    pub fn moments(&self, v: impl Into<[f32; 3]>) -> Moments {
+        let v = vec3(v);
         Moments::mirror(unit(v.z)).plus(self.rest(v))
     }
 
     /// The directional albedo E(v) with F = 1, in [0, 1].
-    pub fn albedo(&self, v: Vec3) -> f32 {
+    pub fn albedo(&self, v: impl Into<[f32; 3]>) -> f32 {
         1.0 - self.lost(v)
     }
 
     /// The share of light lost, 1 − E(v), with all its digits where E is close to 1.
-    pub fn lost(&self, v: Vec3) -> f32 {
+    pub fn lost(&self, v: impl Into<[f32; 3]>) -> f32 {
         // 0 − x, not −x, which would give −0.
-        0.0 - self.rest(v)[0]
+        0.0 - self.rest(vec3(v))[0]
     }
 
     /// Cosine-weighted averages of the moments over the hemisphere of views: 1/π ∫∫ · μ dμ dφ.

@@ -1,12 +1,11 @@
 //! Any of the BSDFs, and the BSDF of a recipe's material by name.
 
-use glam::Vec3;
-
 use microfacet_tables::Reflectance;
 
 use super::bind::StandIn;
 use super::compensation::Compensation;
 use super::error::BindError;
+use super::settings::BsdfSettings;
 use super::{Bsdf, BsdfSample, Conductor, ConductorFresnel, Dielectric, Plastic, Transport};
 use crate::material::Lobe;
 use crate::tables::Tables;
@@ -47,9 +46,19 @@ macro_rules! each {
 }
 
 impl Bsdf for AnyBsdf {
+    fn sample_with_pdf(
+        &self,
+        v: impl Into<[f32; 3]>,
+        choice: f32,
+        u: [f32; 2],
+        transport: Transport,
+    ) -> Option<(BsdfSample, f32)> {
+        each!(self, bsdf => bsdf.sample_with_pdf(v, choice, u, transport))
+    }
+
     fn sample(
         &self,
-        v: Vec3,
+        v: impl Into<[f32; 3]>,
         choice: f32,
         u: [f32; 2],
         transport: Transport,
@@ -57,7 +66,12 @@ impl Bsdf for AnyBsdf {
         each!(self, bsdf => bsdf.sample(v, choice, u, transport))
     }
 
-    fn eval_pdf(&self, v: Vec3, l: Vec3, transport: Transport) -> ([f32; 3], f32) {
+    fn eval_pdf(
+        &self,
+        v: impl Into<[f32; 3]>,
+        l: impl Into<[f32; 3]>,
+        transport: Transport,
+    ) -> ([f32; 3], f32) {
         each!(self, bsdf => bsdf.eval_pdf(v, l, transport))
     }
 
@@ -89,7 +103,10 @@ impl Tables {
     ) -> Result<AnyBsdf, BindError> {
         let lobe = self.material(name)?;
         let entry = self.entry(name)?;
-        let masking = entry.masking();
+        let settings = BsdfSettings::new()
+            .with_masking(entry.masking())
+            .compensated(compensation, self)
+            .with_stand_in(stand_in);
         let fresnel = entry.fresnel.ok_or_else(|| BindError::NoFresnel(name.into()))?;
         let reflectance = match fresnel {
             Reflectance::Mirror => ConductorFresnel::mirror(),
@@ -97,11 +114,9 @@ impl Tables {
             Reflectance::Conductor { eta, k } => ConductorFresnel::exact(eta, k)?,
             Reflectance::Dielectric(_) | Reflectance::Interface { .. } => {
                 let eta = fresnel.middle_index().unwrap_or(f64::NAN);
-                let dielectric = Dielectric::new(lobe, eta)?.with_masking(masking);
-                return Ok(dielectric.compensated(self, compensation, stand_in)?.into());
+                return Ok(Dielectric::new(lobe, eta, settings)?.into());
             }
         };
-        let conductor = Conductor::new(lobe, reflectance).with_masking(masking);
-        Ok(conductor.compensated(self, compensation, stand_in)?.into())
+        Ok(Conductor::new(lobe, reflectance, settings)?.into())
     }
 }

@@ -8,7 +8,7 @@ use microfacet_tables::{Kind, LobeSpec, Reflectance};
 use super::error::BindError;
 use crate::albedo::{Albedo, DielectricAlbedo};
 use crate::error::MaterialError;
-use crate::material::{LobeKey, MicrofacetDistribution};
+use crate::material::{LobeKey, Tabulated};
 use crate::tables::Tables;
 
 /// Whether the round lobe of √(σx σy) may stand in where the tables hold no albedo of an
@@ -35,7 +35,7 @@ impl Tables {
     /// [`BindError::Material`] for a round lobe that the tables do not cover.
     pub fn albedo_of(
         &self,
-        lobe: &impl MicrofacetDistribution,
+        lobe: &impl Tabulated,
         masking: Masking,
         stand_in: StandIn,
     ) -> Result<Albedo, BindError> {
@@ -66,7 +66,7 @@ impl Tables {
     /// [`BindError::NoAlbedo`] naming the lobe.
     pub fn dielectric_albedo_of(
         &self,
-        lobe: &impl MicrofacetDistribution,
+        lobe: &impl Tabulated,
         eta: f64,
         masking: Masking,
         stand_in: StandIn,

@@ -14,6 +14,7 @@ use super::broad::{Broad, cosine_pdf};
 use super::mixture::Part;
 use super::reflectance::ConductorFresnel;
 use crate::albedo::Albedo;
+use crate::vector::vec3;
 
 /// How a BSDF returns the light that one bounce loses to further ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -141,7 +142,7 @@ impl Albedo {
     /// lobe's shape; not reciprocal. Where E is 0 (γ near 3/2 at large σ) the factor is limited to
     /// 1e6.
     #[inline]
-    pub fn turquin(&self, v: Vec3, f0: f32) -> f32 {
+    pub fn turquin(&self, v: impl Into<[f32; 3]>, f0: f32) -> f32 {
         turquin(self.lost(v), f0)
     }
 
@@ -153,7 +154,8 @@ impl Albedo {
     /// *Revisiting physically based shading at Imageworks*, slide "energy compensation"; after
     /// Kelemen & Szirmay-Kalos 2001, eq. 11, <https://doi.org/10.2312/egs.20011003>.
     #[inline]
-    pub fn compensation(&self, v: Vec3, l: Vec3) -> f32 {
+    pub fn compensation(&self, v: impl Into<[f32; 3]>, l: impl Into<[f32; 3]>) -> f32 {
+        let (v, l) = (vec3(v), vec3(l));
         if !(v.z > 0.0 && l.z > 0.0) {
             return 0.0;
         }
@@ -164,14 +166,15 @@ impl Albedo {
     /// to them, NaN to 0): cosine-weighted, which is close to the lobe of rough surfaces. Smooth
     /// surfaces lose their light at grazing, where weights become large.
     #[inline]
-    pub fn sample_compensation(&self, u: [f32; 2]) -> Vec3 {
-        Broad::COSINE.sample(u)
+    pub fn sample_compensation(&self, u: [f32; 2]) -> [f32; 3] {
+        Broad::COSINE.sample(u).to_array()
     }
 
     /// Density of [`sample_compensation`](Self::sample_compensation), cos θ_l/π per steradian; 0
     /// below the horizon.
     #[inline]
-    pub fn compensation_pdf(&self, l: Vec3) -> f32 {
+    pub fn compensation_pdf(&self, l: impl Into<[f32; 3]>) -> f32 {
+        let l = vec3(l);
         if l.z > 0.0 { cosine_pdf(l) } else { 0.0 }
     }
 

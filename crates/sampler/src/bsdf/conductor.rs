@@ -3,23 +3,23 @@
 use glam::Vec3;
 use microfacet_core::Masking;
 
-use super::bind::StandIn;
 use super::compensation::{Compensation, Returned};
 use super::error::BindError;
 use super::facets::{Facets, White};
 use super::mixture::{Mixture, Part, are_finite, choice, chosen};
 use super::reflectance::ConductorFresnel;
+use super::settings::BsdfSettings;
 use super::{Bsdf, BsdfSample, Transport};
 use crate::albedo::Albedo;
-use crate::material::MicrofacetDistribution;
-use crate::tables::Tables;
+use crate::material::{Reflecting, Tabulated};
+use crate::vector::vec3;
 
 /// A rough conductor: every facet reflects F of the light and absorbs the rest.
 ///
 /// Conventions are those of [`Bsdf`]. Single scattering is D F G2/(4 cos θ_v cos θ_l) (Cook &
 /// Torrance 1982, <https://doi.org/10.1145/357290.357293>), sampled by visible normals: its weight
-/// F·G2/G1 is at most 1. [`compensated`](Self::compensated) adds the light of further bounces.
-/// Black from below. With a [`Bounded`](crate::lobe::Bounded) lobe fewer samples are lost.
+/// F·G2/G1 is at most 1. A compensation adds the light of further bounces. Black from below.
+/// With a [`Bounded`](crate::lobe::Bounded) lobe fewer samples are lost.
 #[derive(Clone, Debug)]
 pub struct Conductor<L, const N: usize = 3> {
     lobe: L,
@@ -29,41 +29,31 @@ pub struct Conductor<L, const N: usize = 3> {
     returned: Option<Returned<N>>,
 }
 
-impl<L: MicrofacetDistribution, const N: usize> Conductor<L, N> {
-    /// A conductor of single scattering, with height-correlated masking.
-    pub fn new(lobe: L, fresnel: impl Into<ConductorFresnel<N>>) -> Self {
-        let smooth = lobe.is_effectively_smooth();
-        let (fresnel, masking) = (fresnel.into(), Masking::default());
-        Self { lobe, fresnel, masking, smooth, returned: None }
-    }
-
-    /// This conductor with another form of masking and shadowing, and without compensation, which
-    /// depends on the form.
-    #[must_use]
-    pub fn with_masking(self, masking: Masking) -> Self {
-        Self { masking, returned: None, ..self }
-    }
-
-    /// This conductor with a compensation of the light that one bounce loses, by an albedo from
-    /// tables.
+impl<L: Reflecting + Tabulated, const N: usize> Conductor<L, N> {
+    /// A conductor of a lobe and the reflectance of its facets.
     ///
     /// # Errors
-    /// [`BindError`] if the tables hold no albedo of the lobe for its form of masking; the error
-    /// has the lines of a recipe that add one.
-    pub fn compensated(
-        self,
-        tables: &Tables,
-        compensation: Compensation,
-        stand_in: StandIn,
+    /// [`BindError`] if a compensation was asked for and its tables hold no albedo of the lobe for
+    /// the form of masking; the error has the lines of a recipe that add one.
+    pub fn new(
+        lobe: L,
+        fresnel: impl Into<ConductorFresnel<N>>,
+        settings: BsdfSettings<'_>,
     ) -> Result<Self, BindError> {
-        if compensation == Compensation::None || self.smooth {
-            return Ok(Self { returned: None, ..self });
+        let (smooth, masking) = (lobe.is_effectively_smooth(), settings.masking);
+        let single = Self { lobe, fresnel: fresnel.into(), masking, smooth, returned: None };
+        match settings.compensation().filter(|_| !smooth) {
+            None => Ok(single),
+            Some((compensation, tables)) => {
+                let albedo = tables.albedo_of(&single.lobe, masking, settings.stand_in)?;
+                Ok(single.compensated_by(albedo, compensation))
+            }
         }
-        let albedo = tables.albedo_of(&self.lobe, self.masking, stand_in)?;
-        Ok(self.compensated_by(albedo, compensation))
     }
+}
 
-    /// [`compensated`](Self::compensated) by a given albedo, which must be of the same lobe; its
+impl<L: Reflecting, const N: usize> Conductor<L, N> {
+    /// This conductor with a compensation by a given albedo, which must be of the same lobe; its
     /// form of masking becomes that of the conductor.
     #[must_use]
     pub fn compensated_by(self, albedo: Albedo, compensation: Compensation) -> Self {
@@ -113,20 +103,20 @@ impl<L: MicrofacetDistribution, const N: usize> Conductor<L, N> {
         v: Vec3,
         number: f32,
         u: [f32; 2],
-    ) -> Option<BsdfSample<N>> {
+    ) -> Option<(BsdfSample<N>, f32)> {
         if !are_finite(v, v) {
             return None;
         }
         let lost = returned.lost(v);
         let (is_facet, _) = chosen(choice(number), returned.facets(lost));
         let (l, white) = if is_facet {
-            self.facets().draw(v, u)?
+            self.facets().draw::<true>(v, u)?
         } else {
             let l = returned.broad().sample_above(u)?;
             (l, self.facets().halfway(v, l))
         };
         let mixture = self.mixture(returned, lost, l, white);
-        Some(BsdfSample::reflected(l, mixture.weight(), mixture.pdf()))
+        Some((BsdfSample::reflected(l, mixture.weight()), mixture.pdf()))
     }
 
     #[inline(never)]
@@ -137,36 +127,61 @@ impl<L: MicrofacetDistribution, const N: usize> Conductor<L, N> {
         self.mixture(returned, returned.lost(v), l, self.facets().halfway(v, l)).f_pdf(l)
     }
 
-    fn mirror(&self, v: Vec3) -> BsdfSample<N> {
-        BsdfSample::mirrored(v, self.fresnel.at(v.z))
-    }
-}
-
-impl<L: MicrofacetDistribution, const N: usize> Bsdf<N> for Conductor<L, N> {
+    /// A sample, with its density if `PDF`.
     #[inline(always)]
-    fn sample(
+    fn draw<const PDF: bool>(
         &self,
         v: Vec3,
         choice: f32,
         u: [f32; 2],
-        _transport: Transport,
-    ) -> Option<BsdfSample<N>> {
+    ) -> Option<(BsdfSample<N>, f32)> {
         if !(v.z > 0.0) {
             return None;
         }
         if self.smooth {
-            return are_finite(v, v).then(|| self.mirror(v));
+            let mirror = || (BsdfSample::mirrored(v, self.fresnel.at(v.z)), 0.0);
+            return are_finite(v, v).then(mirror);
         }
         if let Some(returned) = &self.returned {
             return self.sample_mixture(returned, v, choice, u);
         }
-        let (l, white) = self.facets().draw(v, u)?;
+        let (l, white) = self.facets().draw::<PDF>(v, u)?;
         let Part { weight, pdf } = white.part(self.fresnel.at(white.cos));
-        Some(BsdfSample::reflected(l, weight, pdf))
+        Some((BsdfSample::reflected(l, weight), pdf))
+    }
+}
+
+impl<L: Reflecting, const N: usize> Bsdf<N> for Conductor<L, N> {
+    #[inline(always)]
+    fn sample_with_pdf(
+        &self,
+        v: impl Into<[f32; 3]>,
+        choice: f32,
+        u: [f32; 2],
+        _transport: Transport,
+    ) -> Option<(BsdfSample<N>, f32)> {
+        self.draw::<true>(vec3(v), choice, u)
     }
 
     #[inline(always)]
-    fn eval_pdf(&self, v: Vec3, l: Vec3, _transport: Transport) -> ([f32; N], f32) {
+    fn sample(
+        &self,
+        v: impl Into<[f32; 3]>,
+        choice: f32,
+        u: [f32; 2],
+        _transport: Transport,
+    ) -> Option<BsdfSample<N>> {
+        Some(self.draw::<false>(vec3(v), choice, u)?.0)
+    }
+
+    #[inline(always)]
+    fn eval_pdf(
+        &self,
+        v: impl Into<[f32; 3]>,
+        l: impl Into<[f32; 3]>,
+        _transport: Transport,
+    ) -> ([f32; N], f32) {
+        let (v, l) = (vec3(v), vec3(l));
         if self.smooth || !(v.z > 0.0 && l.z > 0.0) {
             return ([0.0; N], 0.0);
         }

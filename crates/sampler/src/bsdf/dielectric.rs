@@ -5,7 +5,6 @@ use alloc::boxed::Box;
 use glam::Vec3;
 use microfacet_core::{Masking, saturated};
 
-use super::bind::StandIn;
 use super::broad::Broad;
 use super::compensation::Compensation;
 use super::energy::{Energy, Shares, side};
@@ -13,10 +12,11 @@ use super::error::BindError;
 use super::facets::White;
 use super::interface::{Interface, Refraction, checked};
 use super::mixture::{Mixture, Part, are_finite, choice, chosen};
+use super::settings::BsdfSettings;
 use super::{Bsdf, BsdfSample, Event, Transport};
 use crate::albedo::DielectricAlbedo;
-use crate::material::MicrofacetDistribution;
-use crate::tables::Tables;
+use crate::material::{Facet, MicrofacetDistribution, Tabulated};
+use crate::vector::vec3;
 
 /// A rough interface between two transparent media: every facet reflects F of the light and
 /// refracts the rest, by Fresnel's equations and Snell's law.
@@ -75,18 +75,27 @@ type Account<'a> = Option<(&'a Returned, Shares)>;
 /// A facet's normal and, where the facet refracts, the quantities of the density.
 type Sender = (Vec3, Option<Refraction>);
 
-impl<L: MicrofacetDistribution> Dielectric<L> {
-    /// A dielectric of single scattering with index of refraction η, inside over outside, and
-    /// height-correlated masking, in three channels.
+impl<L: Tabulated> Dielectric<L> {
+    /// A dielectric of a lobe and an index of refraction η, inside over outside, in three channels.
     ///
     /// # Errors
-    /// [`BindError::Index`] unless η lies in [1e-3, 1e3].
-    pub fn new(lobe: L, eta: f64) -> Result<Self, BindError> {
+    /// [`BindError::Index`] unless η lies in [1e-3, 1e3]; [`BindError`] if a compensation was asked
+    /// for and its tables hold no albedo of the lobe for the index and the form of masking, with
+    /// the lines of a recipe that add one.
+    pub fn new(lobe: L, eta: f64, settings: BsdfSettings<'_>) -> Result<Self, BindError> {
         let (index, eta) = (eta, checked(eta)?);
         let smooth = lobe.is_effectively_smooth() || eta == 1.0;
         let has_pole = lobe.key().has_pole();
-        let masking = Masking::default();
-        Ok(Self { lobe, index, eta, masking, smooth, has_pole, returned: None })
+        let masking = settings.masking;
+        let single = Self { lobe, index, eta, masking, smooth, has_pole, returned: None };
+        match settings.compensation().filter(|_| !smooth) {
+            None => Ok(single),
+            Some((compensation, tables)) => {
+                let albedo =
+                    tables.dielectric_albedo_of(&single.lobe, index, masking, settings.stand_in)?;
+                Ok(single.compensated_by(albedo, compensation))
+            }
+        }
     }
 }
 
@@ -98,33 +107,7 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
         Dielectric { lobe, index, eta, masking, smooth, has_pole, returned }
     }
 
-    /// This dielectric with another form of masking and shadowing, and without compensation, which
-    /// depends on the form.
-    #[must_use]
-    pub fn with_masking(self, masking: Masking) -> Self {
-        Self { masking, returned: None, ..self }
-    }
-
-    /// This dielectric with a compensation of the light that one bounce loses, by albedos from
-    /// tables.
-    ///
-    /// # Errors
-    /// [`BindError`] if the tables hold no albedo of the lobe for its index and form of masking;
-    /// the error has the lines of a recipe that add one.
-    pub fn compensated(
-        self,
-        tables: &Tables,
-        compensation: Compensation,
-        stand_in: StandIn,
-    ) -> Result<Self, BindError> {
-        if compensation == Compensation::None || self.smooth {
-            return Ok(Self { returned: None, ..self });
-        }
-        let albedo = tables.dielectric_albedo_of(&self.lobe, self.index, self.masking, stand_in)?;
-        Ok(self.compensated_by(albedo, compensation))
-    }
-
-    /// [`compensated`](Self::compensated) by given albedos, which must be of the same lobe and
+    /// This dielectric with a compensation by given albedos, which must be of the same lobe and
     /// index; their form of masking becomes that of the dielectric.
     #[must_use]
     pub fn compensated_by(self, albedo: DielectricAlbedo, compensation: Compensation) -> Self {
@@ -170,6 +153,15 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
         Some((returned, returned.energy.shares(seen.side, seen.v)))
     }
 
+    /// A facet, without its density where that is not needed.
+    #[inline(always)]
+    fn facet(&self, v: Vec3, m: Vec3, l: Vec3, with_pdf: bool) -> Facet {
+        if with_pdf {
+            return self.lobe.facet(v, m, l, self.masking);
+        }
+        Facet { density: 0.0, weight: self.lobe.reflection_weight(v, l, self.masking) }
+    }
+
     /// The part of the mixture that facets reflect or refract to a light.
     #[inline(always)]
     fn facets(
@@ -179,20 +171,20 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
         l: Vec3,
         sender: Sender,
         scale: f32,
+        with_pdf: bool,
     ) -> Part<N> {
         let v = seen.v;
         let factor = account.map_or(1.0, |(returned, shares)| returned.energy.factor(&shares));
         let (m, refraction) = sender;
         match refraction {
             None => {
-                let facet = self.lobe.facet(v, m, l, self.masking);
-                let white = White::new(facet, 1.0, v.dot(m));
+                let white = White::new(self.facet(v, m, l, with_pdf), 1.0, v.dot(m));
                 let pdf = white.pdf * seen.face.reflectance(white.cos);
                 Part { pdf, ..white.part([factor; N]) }
             }
             Some(Refraction { transmittance, jacobian, .. }) => {
                 // The opposite of the light is above the surface.
-                let facet = self.lobe.facet(v, m, -l, self.masking);
+                let facet = self.facet(v, m, -l, with_pdf);
                 let pdf = saturated(transmittance * jacobian * facet.density);
                 Part { weight: [facet.weight * factor * scale; N], pdf }
             }
@@ -208,16 +200,16 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
         l: Vec3,
         sender: Option<Sender>,
         scale: f32,
+        with_pdf: bool,
     ) -> Mixture<N> {
-        let facets =
-            sender.map_or(Part::NONE, |sender| self.facets(seen, account, l, sender, scale));
-        let Some((Returned { energy, broad }, shares)) = account else {
+        // The weight of a mixture of two parts takes their densities.
+        let lost = account.map_or(0.0, |(returned, shares)| returned.energy.returned(&shares));
+        let with_pdf = with_pdf || lost > 0.0;
+        let facets = sender
+            .map_or(Part::NONE, |sender| self.facets(seen, account, l, sender, scale, with_pdf));
+        let Some((Returned { energy, broad }, _)) = account.filter(|_| lost > 0.0) else {
             return Mixture { p: 1.0, facets, broad: Part::NONE };
         };
-        let lost = energy.returned(&shares);
-        if lost == 0.0 {
-            return Mixture { p: 1.0, facets, broad: Part::NONE };
-        }
         let reflected = energy.reflected(seen.side);
         let (side, share, scale) = if l.z > 0.0 {
             (seen.side, reflected, 1.0)
@@ -261,17 +253,16 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
         let (l, refraction) = seen.face.refract(seen.v, m, facing)?;
         (l.z < 0.0).then_some((l, (m, Some(refraction))))
     }
-}
 
-impl<L: MicrofacetDistribution, const N: usize> Bsdf<N> for Dielectric<L, N> {
+    /// A sample, with its density if `PDF`.
     #[inline]
-    fn sample(
+    fn draw<const PDF: bool>(
         &self,
         v: Vec3,
         number: f32,
         u: [f32; 2],
         transport: Transport,
-    ) -> Option<BsdfSample<N>> {
+    ) -> Option<(BsdfSample<N>, f32)> {
         let seen = self.seen(v)?;
         let (scale, number) = (seen.face.scale(transport), choice(number));
         let sample = |l: Vec3, weight, pdf, delta| {
@@ -280,7 +271,8 @@ impl<L: MicrofacetDistribution, const N: usize> Bsdf<N> for Dielectric<L, N> {
             } else {
                 (Event::Transmission, seen.face.eta())
             };
-            BsdfSample { l: seen.sign * l, weight, pdf, event, delta, eta }
+            let l = (seen.sign * l).to_array();
+            (BsdfSample { l, weight, event, delta, eta }, pdf)
         };
         if self.smooth {
             let (l, (_, refraction)) = Self::drawn(&seen, number, Vec3::Z)?;
@@ -303,13 +295,13 @@ impl<L: MicrofacetDistribution, const N: usize> Bsdf<N> for Dielectric<L, N> {
                 (l, self.between(&seen, l))
             }
             ((_, rest), _) => {
-                let m = self.lobe.sample_visible_normal(seen.v, u);
+                let m = vec3(self.lobe.sample_visible_normal(seen.v, u));
                 let (l, sender) = Self::drawn(&seen, rest, m)?;
                 if self.may_be_steep(&seen, &sender) {
                     // Decided as evaluation does.
                     let found = self.between(&seen, l);
                     if found.is_none() {
-                        let facets = self.facets(&seen, account, l, sender, scale);
+                        let facets = self.facets(&seen, account, l, sender, scale, false);
                         let weight = facets.weight.map(|weight| weight / (1.0 - lost));
                         return Some(sample(l, weight, 0.0, true));
                     }
@@ -319,20 +311,49 @@ impl<L: MicrofacetDistribution, const N: usize> Bsdf<N> for Dielectric<L, N> {
                 }
             }
         };
-        let mixture = self.mixture(&seen, account, l, sender, scale);
+        let mixture = self.mixture(&seen, account, l, sender, scale, PDF);
         Some(sample(l, mixture.weight(), mixture.pdf(), false))
+    }
+}
+
+impl<L: MicrofacetDistribution, const N: usize> Bsdf<N> for Dielectric<L, N> {
+    #[inline]
+    fn sample_with_pdf(
+        &self,
+        v: impl Into<[f32; 3]>,
+        choice: f32,
+        u: [f32; 2],
+        transport: Transport,
+    ) -> Option<(BsdfSample<N>, f32)> {
+        self.draw::<true>(vec3(v), choice, u, transport)
     }
 
     #[inline]
-    fn eval_pdf(&self, v: Vec3, l: Vec3, transport: Transport) -> ([f32; N], f32) {
+    fn sample(
+        &self,
+        v: impl Into<[f32; 3]>,
+        choice: f32,
+        u: [f32; 2],
+        transport: Transport,
+    ) -> Option<BsdfSample<N>> {
+        Some(self.draw::<false>(vec3(v), choice, u, transport)?.0)
+    }
+
+    #[inline]
+    fn eval_pdf(
+        &self,
+        v: impl Into<[f32; 3]>,
+        l: impl Into<[f32; 3]>,
+        transport: Transport,
+    ) -> ([f32; N], f32) {
         let nothing = ([0.0; N], 0.0);
-        let Some(seen) = self.seen(v).filter(|_| !self.smooth) else { return nothing };
-        let l = seen.sign * l;
+        let Some(seen) = self.seen(vec3(v)).filter(|_| !self.smooth) else { return nothing };
+        let l = seen.sign * vec3(l);
         if l.z == 0.0 || !are_finite(l, l) {
             return nothing;
         }
         let (account, sender) = (self.account(&seen), self.between(&seen, l));
-        self.mixture(&seen, account, l, sender, seen.face.scale(transport)).f_pdf(l)
+        self.mixture(&seen, account, l, sender, seen.face.scale(transport), true).f_pdf(l)
     }
 
     fn is_delta(&self) -> bool {

@@ -4,6 +4,7 @@
 use microfacet_core::fresnel::dielectric;
 
 use super::broad::Broad;
+use super::coat::CoatAlbedo;
 use super::compensation::{Compensation, kulla_conty, turquin};
 use super::interface::Interface;
 use crate::albedo::{DielectricAlbedo, fresnel_average};
@@ -11,8 +12,7 @@ use glam::Vec3;
 
 #[derive(Clone, Debug)]
 pub(super) struct Energy {
-    /// The albedos of one bounce; `None` of a smooth interface, which loses nothing.
-    albedo: Option<DielectricAlbedo>,
+    albedo: OneBounce,
     compensation: Compensation,
     eta: f32,
     /// The average that is lost to further bounces, from outside and from inside, and the share of
@@ -23,6 +23,17 @@ pub(super) struct Energy {
     transmitted: f32,
     /// The average that one bounce reflects from inside.
     back: f32,
+}
+
+/// The albedos of one bounce.
+#[derive(Clone, Debug)]
+enum OneBounce {
+    /// Of a smooth interface, which loses nothing.
+    Smooth,
+    /// From tables.
+    Tables(DielectricAlbedo),
+    /// Of a lobe, from outside alone.
+    Coat(CoatAlbedo),
 }
 
 /// The shares of the light of one view: reflected, transmitted and lost in one bounce.
@@ -56,9 +67,22 @@ impl Energy {
         let dense = eta.max(1.0 / eta);
         let thin = 1.0 - fresnel_average(|cos| dielectric(dense, cos));
         let transmitted = if eta >= 1.0 { thin } else { thin / (dense * dense) };
-        let (albedo, compensation) = (None, Compensation::None);
+        let (albedo, compensation) = (OneBounce::Smooth, Compensation::None);
         let (lost, reflected, back) = ([0.0; 2], [1.0; 2], 0.0);
         Self { albedo, compensation, eta, lost, transmitted, reflected, back }
+    }
+
+    /// The energy of one bounce off a rough coat, seen from outside.
+    pub(super) fn coat(albedo: CoatAlbedo, eta: f32) -> Self {
+        Self {
+            compensation: Compensation::None,
+            eta,
+            lost: [0.0; 2],
+            reflected: [1.0; 2],
+            transmitted: albedo.transmitted(),
+            back: albedo.back,
+            albedo: OneBounce::Coat(albedo),
+        }
     }
 
     /// The energy of a rough interface; the albedos must be those of its lobe, index and form of
@@ -91,7 +115,7 @@ impl Energy {
             Compensation::KullaConty => single + crossing[0] * lost[0],
         };
         Self {
-            albedo: Some(albedo),
+            albedo: OneBounce::Tables(albedo),
             compensation,
             eta,
             lost: lost.map(|x| x as f32),
@@ -105,14 +129,15 @@ impl Energy {
     #[inline]
     pub(super) fn shares(&self, side: usize, v: Vec3) -> Shares {
         match &self.albedo {
-            None => {
+            OneBounce::Smooth => {
                 let reflection = Interface::new(self.eta, side == OUTSIDE).reflectance(v.z.abs());
                 Shares { reflection, transmission: 1.0 - reflection, lost: 0.0 }
             }
-            Some(albedo) => {
+            OneBounce::Tables(albedo) => {
                 let curve = if side == 0 { &albedo.outside } else { &albedo.inside };
                 Shares::of(curve.eval(Vec3::new(v.x, v.y, v.z.abs())))
             }
+            OneBounce::Coat(albedo) => Shares::of(albedo.shares(v)),
         }
     }
 
@@ -171,7 +196,9 @@ impl Energy {
     pub(super) fn left(&self, base: f32) -> f32 {
         let squared = self.eta * self.eta;
         match (&self.albedo, self.compensation) {
-            (Some(_), Compensation::None) => squared * (1.0 - base * self.back),
+            (OneBounce::Tables(_) | OneBounce::Coat(_), Compensation::None) => {
+                squared * (1.0 - base * self.back)
+            }
             // By reciprocity 1 − R = T/η², so that the light that enters a white base leaves it
             // again to rounding; this avoids the cancellation of 1 − (1 − T/η²).
             _ => squared * (1.0 - base) + base * self.transmitted,

@@ -5,8 +5,8 @@ use alloc::boxed::Box;
 use glam::Vec3;
 use microfacet_core::Masking;
 
-use super::bind::StandIn;
 use super::broad::Broad;
+use super::coat::CoatAlbedo;
 use super::compensation::Compensation;
 use super::energy::{Energy, OUTSIDE, Shares};
 use super::error::BindError;
@@ -14,10 +14,11 @@ use super::facets::{Facets, White};
 use super::interface::{Interface, checked};
 use super::mixture::{Mixture, Part, are_finite, choice, chosen};
 use super::reflectance::reflectances;
+use super::settings::BsdfSettings;
 use super::{Bsdf, BsdfSample, Transport};
 use crate::albedo::DielectricAlbedo;
-use crate::material::MicrofacetDistribution;
-use crate::tables::Tables;
+use crate::material::{Reflecting, Tabulated};
+use crate::vector::vec3;
 
 /// A rough dielectric coat over a Lambert base, which receives exactly the light that the coat
 /// transmits.
@@ -30,31 +31,31 @@ use crate::tables::Tables;
 /// ```
 ///
 /// with R the share of diffuse light from inside that the coat reflects, so that light reflected
-/// between base and coat any number of times is included. T and R are from the tables' albedos,
-/// compensation included; a smooth coat needs no tables. With a compensation a white base returns
-/// all light. With a [`Bounded`](crate::lobe::Bounded) lobe fewer samples are lost.
+/// between base and coat any number of times is included. T and R are albedos of the coat, those of
+/// tables where there is a compensation; a white base then returns all light. With a
+/// [`Bounded`](crate::lobe::Bounded) lobe fewer samples are lost.
 ///
-/// The default set has no albedos of rough coats. They are baked for a recipe that names the coat,
-/// for round lobes of the family; [`StandIn::Round`] uses them for anisotropic and tilted lobes.
+/// Single scattering needs no table: T and R are integrated, to 2e-3 of those that are baked. The
+/// default set has no albedos of rough coats, so that compensation needs a set baked from a recipe
+/// that names the coat, for round lobes of the family; [`StandIn::Round`] uses them for
+/// anisotropic and tilted lobes.
 ///
 /// ```
 /// # #[cfg(feature = "embedded")] {
-/// use microfacet_sampler::lobe::Smooth;
-/// use microfacet_sampler::{Compensation, Plastic, StandIn, Tables};
+/// use microfacet_sampler::{BsdfSettings, Compensation, Plastic, Tables};
 ///
 /// let tables = Tables::embedded();
-/// let coat = tables.student_t(0.3, 2.5)?;
-/// let (none, green) = (Compensation::None, [0.1, 0.4, 0.2]);
-/// let rough = Plastic::new(coat, 1.5, green, &tables, none, StandIn::Refused);
-/// let recipe = rough.err().and_then(|why| why.recipe()).expect("refused for want of an albedo");
-/// // Bake these lines, and load the set: Tables::from_bytes(&file).
-/// assert!(recipe.contains("gamma = 2.5\nfresnel = { dielectric = 1.5 }"));
-/// // A smooth coat needs no albedo.
-/// assert!(Plastic::new(Smooth, 1.5, green, &tables, none, StandIn::Refused).is_ok());
+/// let (coat, green) = (tables.student_t(0.3, 2.5)?, [0.1, 0.4, 0.2]);
+/// let single = Plastic::new(coat.clone(), 1.5, green, BsdfSettings::new())?;
+/// // With compensation the error has the lines to bake: then `Tables::from_bytes(&file)`.
+/// let settings = BsdfSettings::new().compensated(Compensation::KullaConty, &tables);
+/// let why = Plastic::new(coat, 1.5, green, settings).unwrap_err();
+/// assert!(why.to_string().contains("gamma = 2.5\nfresnel = { dielectric = 1.5 }"));
 /// # }
-/// # Ok::<(), microfacet_sampler::MaterialError>(())
+/// # Ok::<(), microfacet_sampler::BindError>(())
 /// ```
 ///
+/// [`StandIn::Round`]: crate::StandIn::Round
 /// [`Dielectric`]: crate::Dielectric
 #[derive(Clone, Debug)]
 pub struct Plastic<L, const N: usize = 3> {
@@ -73,76 +74,60 @@ pub struct Plastic<L, const N: usize = 3> {
     broad: Box<Broad>,
 }
 
-impl<L: MicrofacetDistribution, const N: usize> Plastic<L, N> {
-    /// Plastic with a coat of index η, inside over outside, over a base of albedo ρ, with
-    /// height-correlated masking, and albedos of the coat from tables.
+impl<L: Reflecting + Tabulated, const N: usize> Plastic<L, N> {
+    /// Plastic with a coat of a lobe and an index η, inside over outside, over a base of albedo ρ.
+    ///
+    /// For single scattering the albedo of a rough coat is integrated here, which takes 50,000
+    /// samples of the lobe, some milliseconds.
     ///
     /// # Errors
-    /// [`BindError`] for an η outside [1e-3, 1e3], a ρ outside [0, 1], or a rough coat whose albedo
-    /// the tables do not hold, which is needed without compensation too; the error has the lines of
-    /// a recipe that add it.
+    /// [`BindError`] for an η outside [1e-3, 1e3], a ρ outside [0, 1], or where a compensation was
+    /// asked for and its tables hold no albedo of the coat, with the lines of a recipe that add it.
     pub fn new(
         lobe: L,
         eta: f64,
         base: [f32; N],
-        tables: &Tables,
-        compensation: Compensation,
-        stand_in: StandIn,
+        settings: BsdfSettings<'_>,
     ) -> Result<Self, BindError> {
-        let masking = Masking::default();
-        Self::new_masked(lobe, eta, base, masking, tables, compensation, stand_in)
+        let (index, eta) = (eta, checked(eta)?);
+        reflectances("base", &base)?;
+        let (smooth, masking) = (lobe.is_effectively_smooth() || eta == 1.0, settings.masking);
+        let energy = match settings.compensation() {
+            _ if smooth => Energy::smooth(eta),
+            None => Energy::coat(CoatAlbedo::new(&lobe, masking, eta), eta),
+            Some((compensation, tables)) => {
+                let albedo =
+                    tables.dielectric_albedo_of(&lobe, index, masking, settings.stand_in)?;
+                Energy::rough(albedo, compensation, eta)
+            }
+        };
+        Ok(Self::made(lobe, [index, eta.into()], base, masking, smooth, energy))
     }
+}
 
-    /// [`new`](Self::new) with a form of masking and shadowing.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new).
-    pub fn new_masked(
-        lobe: L,
-        eta: f64,
-        base: [f32; N],
-        masking: Masking,
-        tables: &Tables,
-        compensation: Compensation,
-        stand_in: StandIn,
-    ) -> Result<Self, BindError> {
-        Self::made(lobe, eta, base, masking, compensation, |lobe| {
-            tables.dielectric_albedo_of(lobe, eta, masking, stand_in)
-        })
-    }
-
-    /// [`new`](Self::new) by given albedos, which must be of the same lobe and index; their form of
+impl<L: Reflecting, const N: usize> Plastic<L, N> {
+    /// This plastic with given albedos, which must be of the same lobe and index; their form of
     /// masking becomes that of the plastic.
-    ///
-    /// # Errors
-    /// [`BindError`] for an η outside [1e-3, 1e3] or a ρ outside [0, 1].
-    pub fn with_albedo(
-        lobe: L,
-        eta: f64,
-        base: [f32; N],
-        albedo: DielectricAlbedo,
-        compensation: Compensation,
-    ) -> Result<Self, BindError> {
+    #[must_use]
+    pub fn compensated_by(self, albedo: DielectricAlbedo, compensation: Compensation) -> Self {
+        let Self { lobe, index, eta, base, smooth, .. } = self;
         let masking = albedo.masking;
-        Self::made(lobe, eta, base, masking, compensation, |_| Ok(albedo))
+        let energy = match smooth {
+            true => Energy::smooth(eta),
+            false => Energy::rough(albedo, compensation, eta),
+        };
+        Self::made(lobe, [index, eta.into()], base, masking, smooth, energy)
     }
 
     fn made(
         lobe: L,
-        eta: f64,
+        [index, eta]: [f64; 2],
         base: [f32; N],
         masking: Masking,
-        compensation: Compensation,
-        albedo: impl FnOnce(&L) -> Result<DielectricAlbedo, BindError>,
-    ) -> Result<Self, BindError> {
-        let (index, eta) = (eta, checked(eta)?);
-        reflectances("base", &base)?;
-        let smooth = lobe.is_effectively_smooth() || eta == 1.0;
-        let energy = Box::new(if smooth {
-            Energy::smooth(eta)
-        } else {
-            Energy::rough(albedo(&lobe)?, compensation, eta)
-        });
+        smooth: bool,
+        energy: Energy,
+    ) -> Self {
+        let (eta, energy) = (eta as f32, Box::new(energy));
         let diffuse = base.map(|base| {
             let left = energy.left(base);
             // 1 − ρ R = 0 only where the coat transmits nothing.
@@ -156,7 +141,7 @@ impl<L: MicrofacetDistribution, const N: usize> Plastic<L, N> {
                 + energy.reflected(OUTSIDE) * energy.returned(&shares)
         }));
         let mean = mean * energy.transmitted_average();
-        Ok(Self { lobe, index, eta, base, masking, smooth, energy, diffuse, mean, broad })
+        Self { lobe, index, eta, base, masking, smooth, energy, diffuse, mean, broad }
     }
 
     /// The lobe of the coat.
@@ -220,15 +205,16 @@ impl<L: MicrofacetDistribution, const N: usize> Plastic<L, N> {
     }
 }
 
-impl<L: MicrofacetDistribution, const N: usize> Bsdf<N> for Plastic<L, N> {
+impl<L: Reflecting, const N: usize> Bsdf<N> for Plastic<L, N> {
     #[inline]
-    fn sample(
+    fn sample_with_pdf(
         &self,
-        v: Vec3,
+        v: impl Into<[f32; 3]>,
         number: f32,
         u: [f32; 2],
         _transport: Transport,
-    ) -> Option<BsdfSample<N>> {
+    ) -> Option<(BsdfSample<N>, f32)> {
+        let v = vec3(v);
         if !(v.z > 0.0 && are_finite(v, v)) {
             return None;
         }
@@ -239,17 +225,23 @@ impl<L: MicrofacetDistribution, const N: usize> Bsdf<N> for Plastic<L, N> {
             let l = self.broad.sample_above(u)?;
             (l, self.halfway(&shares, v, l))
         } else if self.smooth {
-            return Some(BsdfSample::mirrored(v, [shares.reflection / p; N]));
+            return Some((BsdfSample::mirrored(v, [shares.reflection / p; N]), 0.0));
         } else {
-            let (l, white) = self.facets().draw(v, u)?;
+            let (l, white) = self.facets().draw::<true>(v, u)?;
             (l, self.coat(&shares, white))
         };
         let mixture = Mixture { p, facets, broad: self.diffuse(&shares, l) };
-        Some(BsdfSample::reflected(l, mixture.weight(), mixture.pdf()))
+        Some((BsdfSample::reflected(l, mixture.weight()), mixture.pdf()))
     }
 
     #[inline]
-    fn eval_pdf(&self, v: Vec3, l: Vec3, _transport: Transport) -> ([f32; N], f32) {
+    fn eval_pdf(
+        &self,
+        v: impl Into<[f32; 3]>,
+        l: impl Into<[f32; 3]>,
+        _transport: Transport,
+    ) -> ([f32; N], f32) {
+        let (v, l) = (vec3(v), vec3(l));
         if !(v.z > 0.0 && l.z > 0.0 && are_finite(v, l)) {
             return ([0.0; N], 0.0);
         }

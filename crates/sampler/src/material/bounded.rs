@@ -20,13 +20,17 @@ use microfacet_core::math::unit;
 use microfacet_tables::axis::hermite::split;
 use wide::f32x4;
 
+use super::batch::Batch;
 use super::distribution::{Facet, MicrofacetDistribution};
 use super::key::LobeKey;
 use super::lanes::first_three;
 use super::lanes::four::{LANES, coefficients, transpose};
 use super::lanes::views::{View, Views};
+use super::reflecting::Reflecting;
 use super::student_t::StudentT;
+use super::tabulated::Tabulated;
 use crate::error::{BatchError, same_lengths};
+use crate::vector::vec3;
 
 /// Cells of the slope x : z by x/(|x| + z), over [−1, 1], and rows of the table between two rows of
 /// limits.
@@ -55,15 +59,12 @@ const SLACK: f64 = 1e-6;
 ///
 /// ```
 /// # #[cfg(feature = "embedded")] {
-/// # use microfacet_sampler::glam::Vec3;
-/// # use microfacet_sampler::{Masking, MicrofacetDistribution, Tables};
+/// # use microfacet_sampler::lobe::Reflecting;
+/// # use microfacet_sampler::{Masking, Tables};
 /// let bounded = Tables::embedded().student_t(0.8, 3.0)?.bounded();
-/// let v = Vec3::new(0.6, 0.0, 0.8);
-/// let at = bounded.at(v);
-/// let m = at.sample([0.3, 0.7]);
-/// let l = 2.0 * v.dot(m) * m - v;
-/// let weight = at.share() * bounded.lobe().reflection_weight(v, l, Masking::HeightCorrelated);
-/// # assert!(weight > 0.0 && weight < at.share() && at.share() < 1.0);
+/// let (v, masking) = ([0.6, 0.0, 0.8], Masking::HeightCorrelated);
+/// let (l, weight) = bounded.sample_reflected(v, [0.3, 0.7], masking).expect("above the horizon");
+/// assert!(l[2] > 0.0 && weight > 0.0 && weight < bounded.at(v).share());
 /// # }
 /// # Ok::<(), microfacet_sampler::MaterialError>(())
 /// ```
@@ -153,14 +154,10 @@ impl Bounded {
         &self.lobe
     }
 
-    /// Bytes of table that lookups touch.
-    pub fn bytes(&self) -> usize {
-        self.lobe.bytes() + size_of_val(&self.limits[..])
-    }
-
     /// The normals of a view.
     #[inline]
-    pub fn at(&self, v: Vec3) -> BoundedView<'_> {
+    pub fn at(&self, v: impl Into<[f32; 3]>) -> BoundedView<'_> {
+        let v = vec3(v);
         let view = if self.lobe.slices.peeled {
             self.lobe.view::<true>(v)
         } else {
@@ -181,11 +178,11 @@ impl Bounded {
     ///
     /// # Errors
     /// [`BatchError`] if the slices are not of one length; nothing is then written.
-    pub fn sample_batch(
+    pub fn sample_batch<V: Copy + Into<[f32; 3]>, M: From<[f32; 3]>>(
         &self,
-        v: &[Vec3],
+        v: &[V],
         u: &[[f32; 2]],
-        m: &mut [Vec3],
+        m: &mut [M],
         share: &mut [f32],
     ) -> Result<(), BatchError> {
         same_lengths(&[("v", v.len()), ("u", u.len()), ("m", m.len()), ("share", share.len())])?;
@@ -277,62 +274,83 @@ impl Bounded {
 /// As the lobe, except for the normals that are drawn for reflection.
 impl MicrofacetDistribution for Bounded {
     #[inline(always)]
-    fn d(&self, m: Vec3) -> f32 {
+    fn d(&self, m: impl Into<[f32; 3]>) -> f32 {
         self.lobe.d(m)
     }
 
     #[inline(always)]
-    fn g1(&self, v: Vec3) -> f32 {
+    fn g1(&self, v: impl Into<[f32; 3]>) -> f32 {
         self.lobe.g1(v)
     }
 
     #[inline(always)]
-    fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+    fn sample_visible_normal(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> [f32; 3] {
         self.lobe.sample_visible_normal(v, u)
     }
 
     #[inline]
-    fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+    fn visible_normal_pdf(&self, v: impl Into<[f32; 3]>, m: impl Into<[f32; 3]>) -> f32 {
         self.lobe.visible_normal_pdf(v, m)
     }
 
-    fn table_pdf(&self, v: Vec3, m: Vec3) -> f32 {
-        self.lobe.table_pdf(v, m)
-    }
-
     #[inline(always)]
-    fn facet(&self, v: Vec3, m: Vec3, l: Vec3, masking: Masking) -> Facet {
+    fn facet(
+        &self,
+        v: impl Into<[f32; 3]>,
+        m: impl Into<[f32; 3]>,
+        l: impl Into<[f32; 3]>,
+        masking: Masking,
+    ) -> Facet {
         self.lobe.facet(v, m, l, masking)
     }
 
+    fn is_effectively_smooth(&self) -> bool {
+        self.lobe.is_effectively_smooth()
+    }
+}
+
+impl Reflecting for Bounded {
     #[inline]
-    fn sample_reflecting_normal(&self, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
+    fn sample_reflecting_normal(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> ([f32; 3], f32) {
         let at = self.at(v);
         (at.sample(u), at.share())
     }
 
     #[inline]
-    fn reflecting_share(&self, v: Vec3) -> f32 {
+    fn reflecting_share(&self, v: impl Into<[f32; 3]>) -> f32 {
         self.at(v).share()
+    }
+}
+
+impl Tabulated for Bounded {
+    fn table_pdf(&self, v: impl Into<[f32; 3]>, m: impl Into<[f32; 3]>) -> f32 {
+        self.lobe.table_pdf(v, m)
     }
 
     fn key(&self) -> LobeKey {
         self.lobe.key()
     }
 
-    fn is_effectively_smooth(&self) -> bool {
-        self.lobe.is_effectively_smooth()
-    }
-
     fn bytes(&self) -> usize {
-        Bounded::bytes(self)
+        self.lobe.bytes() + size_of_val(&self.limits[..])
     }
+}
 
-    fn sample_batch(&self, v: &[Vec3], u: &[[f32; 2]], m: &mut [Vec3]) -> Result<(), BatchError> {
+impl Batch for Bounded {
+    fn sample_batch<V: Copy + Into<[f32; 3]>, M: From<[f32; 3]>>(
+        &self,
+        v: &[V],
+        u: &[[f32; 2]],
+        m: &mut [M],
+    ) -> Result<(), BatchError> {
         self.lobe.sample_batch(v, u, m)
     }
 
-    fn g1_batch(&self, v: &[Vec3], g1: &mut [f32]) -> Result<(), BatchError> {
+    fn g1_batch<V: Copy + Into<[f32; 3]>>(
+        &self,
+        v: &[V],
+        g1: &mut [f32],
+    ) -> Result<(), BatchError> {
         self.lobe.g1_batch(v, g1)
     }
 }
@@ -365,14 +383,14 @@ fn within(from: f32, share: f32, u: f32) -> f32 {
 impl BoundedView<'_> {
     /// A normal from two random numbers, which are clamped to [0, 1].
     #[inline]
-    pub fn sample(&self, u: [f32; 2]) -> Vec3 {
+    pub fn sample(&self, u: [f32; 2]) -> [f32; 3] {
         let (lobe, v) = (self.lobe, self.v);
         let u = [within(self.from, self.share, u[0]), u[1]];
         if lobe.slices.peeled {
             return lobe.sample_visible_normal(v, u);
         }
         let m = lobe.draw::<false>(&self.view, u, [lobe.sigma_x, lobe.sigma_y], |m| m);
-        m.map_or_else(|| lobe.sample_general(v.x, v.y, v.z, u), first_three)
+        m.map_or_else(|| lobe.sample_general(v.x, v.y, v.z, u), first_three).to_array()
     }
 
     /// Probability that an unbounded sample lies in the interval, in (0, 1]: the factor on a
@@ -386,13 +404,13 @@ impl BoundedView<'_> {
     ///
     /// The density of reflected directions is this density over 4 v·m.
     #[inline]
-    pub fn visible_normal_pdf(&self, m: Vec3) -> f32 {
+    pub fn visible_normal_pdf(&self, m: impl Into<[f32; 3]>) -> f32 {
         self.lobe.visible_normal_pdf(self.v, m) / self.share
     }
 
     /// The density of the table's samples for an `m` that reflects the view above the horizon, see
-    /// [`MicrofacetDistribution::table_pdf`].
-    pub fn table_pdf(&self, m: Vec3) -> f32 {
+    /// [`Tabulated::table_pdf`].
+    pub fn table_pdf(&self, m: impl Into<[f32; 3]>) -> f32 {
         self.lobe.table_pdf(self.v, m) / self.share
     }
 }

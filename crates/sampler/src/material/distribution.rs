@@ -1,10 +1,9 @@
-//! The trait of all lobes.
+//! The trait of all lobes: D, masking, visible normals and their density.
 
 use glam::Vec3;
 use microfacet_core::{Masking, saturated};
 
-use super::key::LobeKey;
-use crate::error::{BatchError, same_lengths};
+use crate::vector::vec3;
 
 /// Below this mean absolute slope a surface counts as a mirror. For GGX the mean slope is α, which
 /// pbrt's `EffectivelySmooth` compares with the same number; for γ near 3/2 it is much larger than
@@ -67,32 +66,64 @@ impl Facet {
 /// model: Heitz 2014, *Understanding the masking-shadowing function in microfacet-based BRDFs*,
 /// <https://jcgt.org/published/0003/02/03/>.
 ///
-/// Directions are unit vectors in the tangent frame, n = +z. `v` is the view, `l` the light, `m` a
-/// microfacet normal; densities are per steradian. Everything is one-sided: views and lights at or
-/// below the horizon have G1 = 0 and Λ = ∞. So negate a direction on the other side of a
-/// transmitting surface first, v ↦ −v and l ↦ −l: facets stay where they are, and m above the
-/// horizon. The mirror image of a direction in the plane z = 0 sees other facets: there the density
-/// of visible normals differs, and for a tilted lobe masking too. Sampling moves a view below the
-/// horizon to the horizon; densities are for views above it. [An
-/// example](crate#a-bsdf-of-your-own).
+/// Directions are unit vectors in the tangent frame, n = +z, of any type that converts to three
+/// `f32`; results are `[f32; 3]`. `v` is the view, `l` the light, `m` a microfacet normal;
+/// densities are per steradian. Everything is one-sided: views and lights at or below the horizon
+/// have G1 = 0 and Λ = ∞. So negate a direction on the other side of a transmitting surface first,
+/// v ↦ −v and l ↦ −l: facets stay where they are, and m above the horizon. The mirror image of a
+/// direction in the plane z = 0 sees other facets: there the density of visible normals differs,
+/// and for a tilted lobe masking too. Sampling moves a view below the horizon to the horizon;
+/// densities are for views above it.
+///
+/// A lobe of your own needs D, G1, a sampler and its density. With an empty
+/// [`Reflecting`](crate::lobe::Reflecting) and [`Tabulated`](crate::lobe::Tabulated) it serves
+/// every [`Bsdf`](crate::Bsdf) of this crate. [`Lobe`](crate::Lobe) is any lobe of the crate in one
+/// type, in place of a trait object.
 pub trait MicrofacetDistribution {
     /// Normal distribution function D(m), with ∫ D(m) (m·n) dm = 1; 0 for m at or below the
     /// horizon.
-    fn d(&self, m: Vec3) -> f32;
+    fn d(&self, m: impl Into<[f32; 3]>) -> f32;
 
     /// Smith masking G1(v) ∈ [0, 1]: the visible share of the microsurface projected along `v`.
-    fn g1(&self, v: Vec3) -> f32;
+    fn g1(&self, v: impl Into<[f32; 3]>) -> f32;
+
+    /// A normal visible from `v`, from two numbers in [0, 1] (clamped to them, NaN to 0).
+    ///
+    /// From tables `u[0]` chooses the slope along the azimuth of the view and `u[1]` that across,
+    /// both rising, so that stratified numbers give stratified normals. The normal has unit length
+    /// to 4 ulp, lies above the horizon, and faces the view to rounding (v·m > −5e-7).
+    fn sample_visible_normal(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> [f32; 3];
+
+    /// Density of visible normals, (v·m)⁺ D(m)/A(v), with A the projected area of the microsurface
+    /// (Heitz & d'Eon 2014, eq. 2, <https://doi.org/10.1111/cgf.12417>). 1/A is G1(v)/(v·n), but
+    /// for a tilted lobe where its G1 is clamped to 1. The density of reflected lights is this
+    /// density over 4 v·m.
+    ///
+    /// 0 where `m` faces away or lies below the horizon; finite at grazing views. Analytic, with
+    /// the area from the tables.
+    fn visible_normal_pdf(&self, v: impl Into<[f32; 3]>, m: impl Into<[f32; 3]>) -> f32;
+
+    /// A visible normal and its analytic density, [`visible_normal_pdf`](Self::visible_normal_pdf).
+    ///
+    /// The samples differ from this density by the errors of the tables, some 1e-4 of the CDF;
+    /// where that bias matters divide by [`table_pdf`](crate::lobe::Tabulated::table_pdf).
+    #[inline]
+    fn sample_with_pdf(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> ([f32; 3], f32) {
+        let v = v.into();
+        let m = self.sample_visible_normal(v, u);
+        (m, self.visible_normal_pdf(v, m))
+    }
 
     /// Smith's Λ(v) = 1/G1 − 1 ≥ 0. Its absolute accuracy is that of G1: where Λ is below 1e-5 only
     /// its order of magnitude is meaningful.
     #[inline]
-    fn lambda(&self, v: Vec3) -> f32 {
+    fn lambda(&self, v: impl Into<[f32; 3]>) -> f32 {
         1.0 / self.g1(v) - 1.0
     }
 
     /// Masking and shadowing G2 of view and light; 0 when either is at or below the horizon.
     #[inline]
-    fn g2(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
+    fn g2(&self, v: impl Into<[f32; 3]>, l: impl Into<[f32; 3]>, masking: Masking) -> f32 {
         masking.g2(self.g1(v), self.g1(l))
     }
 
@@ -103,56 +134,32 @@ pub trait MicrofacetDistribution {
     /// has few digits, or none, where both are subnormal, as in the far tails of Beckmann. 0 when
     /// `v` or `l` is at or below the horizon.
     #[inline]
-    fn reflection_weight(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
-        if v.z > 0.0 { masking.g2_over_g1(self.g1(v), self.g1(l)) } else { 0.0 }
-    }
-
-    /// A normal visible from `v`, from two numbers in [0, 1] (clamped to them, NaN to 0).
-    ///
-    /// From tables `u[0]` chooses the slope along the azimuth of the view and `u[1]` that across,
-    /// both rising, so that stratified numbers give stratified normals. The normal has unit length
-    /// to 4 ulp, lies above the horizon, and faces the view to rounding (v·m > −5e-7).
-    fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3;
-
-    /// Density of visible normals, (v·m)⁺ D(m)/A(v), with A the projected area of the microsurface
-    /// (Heitz & d'Eon 2014, eq. 2, <https://doi.org/10.1111/cgf.12417>). 1/A is G1(v)/(v·n), but
-    /// for a tilted lobe where its G1 is clamped to 1. The density of reflected lights is this
-    /// density over 4 v·m.
-    ///
-    /// 0 where `m` faces away or lies below the horizon; finite at grazing views. Analytic, with
-    /// the area from the tables.
-    fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32;
-
-    /// Density with which [`sample_visible_normal`](Self::sample_visible_normal) draws `m`, the
-    /// tables' errors included: an estimator that divides by it is unbiased.
-    ///
-    /// Except for [`Radial`](crate::lobe::Radial): it returns
-    /// [`visible_normal_pdf`](Self::visible_normal_pdf), from which its samples differ by the
-    /// errors of its tables.
-    #[inline]
-    fn table_pdf(&self, v: Vec3, m: Vec3) -> f32 {
-        self.visible_normal_pdf(v, m)
-    }
-
-    /// A visible normal and its analytic density, [`visible_normal_pdf`](Self::visible_normal_pdf).
-    ///
-    /// The samples differ from this density by the errors of the tables, some 1e-4 of the CDF;
-    /// where that bias matters divide by [`table_pdf`](Self::table_pdf).
-    #[inline]
-    fn sample_with_pdf(&self, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
-        let m = self.sample_visible_normal(v, u);
-        (m, self.visible_normal_pdf(v, m))
+    fn reflection_weight(
+        &self,
+        v: impl Into<[f32; 3]>,
+        l: impl Into<[f32; 3]>,
+        masking: Masking,
+    ) -> f32 {
+        let v = v.into();
+        if v[2] > 0.0 { masking.g2_over_g1(self.g1(v), self.g1(l)) } else { 0.0 }
     }
 
     /// The facet that reflects or refracts light between `v` and `l`, both above the horizon. Its
     /// normal is along `m`, of any length, so that a half vector need not be normalised. The
-    /// evaluation of a BSDF calls only this and [`reflecting_share`](Self::reflecting_share).
+    /// evaluation of a BSDF calls only this and
+    /// [`reflecting_share`](crate::lobe::Reflecting::reflecting_share).
     ///
     /// The microfacet BRDF without Fresnel is density·weight/(4 l·n), the density of the reflected
     /// light density/4. For light that is transmitted `l` is the direction opposite to it.
     #[inline]
-    fn facet(&self, v: Vec3, m: Vec3, l: Vec3, masking: Masking) -> Facet {
-        let m = m.normalize_or_zero();
+    fn facet(
+        &self,
+        v: impl Into<[f32; 3]>,
+        m: impl Into<[f32; 3]>,
+        l: impl Into<[f32; 3]>,
+        masking: Masking,
+    ) -> Facet {
+        let (v, m) = (vec3(v), vec3(m).normalize_or_zero());
         let facing = v.dot(m);
         if !(facing > 0.0) {
             return Facet::default();
@@ -161,66 +168,15 @@ pub trait MicrofacetDistribution {
         Facet { density, weight: self.reflection_weight(v, l, masking) }
     }
 
-    /// A visible normal for reflection alone, of any length, and the
-    /// [share](Self::reflecting_share) of `v`.
+    /// Whether the lobe is so narrow that a renderer should treat the surface as a mirror; by
+    /// default never.
     ///
-    /// The light is 2 (v·m)/(m·m) m − v, which is shorter to compute than the unit normal. Where
-    /// v·m is not positive, rounding has put the normal behind the silhouette, and no light is
-    /// reflected.
-    ///
-    /// Lobes may leave out normals that reflect the view below the horizon, as
-    /// [`Bounded`](crate::lobe::Bounded) does; all others keep their density, divided by the share.
-    #[inline(always)]
-    fn sample_reflecting_normal(&self, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
-        (self.sample_visible_normal(v, u), 1.0)
-    }
-
-    /// The probability in (0, 1] that a visible normal is one of those that
-    /// [`sample_reflecting_normal`](Self::sample_reflecting_normal) draws.
-    #[inline(always)]
-    fn reflecting_share(&self, _v: Vec3) -> f32 {
-        1.0
-    }
-
-    /// The key of the lobe in tables of albedos; by default, no table holds it.
-    fn key(&self) -> LobeKey {
-        LobeKey::Unknown
-    }
-
-    /// Whether the lobe is so narrow that a renderer should treat the surface as a mirror: its mean
-    /// absolute slope, in the rougher direction, is below 1e-3 (for GGX: α < 1e-3), so is the slope
-    /// of its mean normal, and 1 − G1 is at most 2.5e-3 where cos θ = 0.01.
-    ///
-    /// A mirror returns all light; just above this limit one bounce returns it to 6e-3 at cos
-    /// θ ≥ 0.01, whatever γ. The surface brightens by that where a texture of roughness crosses the
-    /// limit.
-    fn is_effectively_smooth(&self) -> bool;
-
-    /// Bytes of table that lookups touch; 0 for closed forms.
-    fn bytes(&self) -> usize;
-
-    /// [`sample_visible_normal`](Self::sample_visible_normal) for each view and pair of numbers,
-    /// into `m`: the same normals, to 2 ulp.
-    ///
-    /// # Errors
-    /// [`BatchError`] if the slices are not of one length; `m` is then untouched.
-    fn sample_batch(&self, v: &[Vec3], u: &[[f32; 2]], m: &mut [Vec3]) -> Result<(), BatchError> {
-        same_lengths(&[("v", v.len()), ("u", u.len()), ("m", m.len())])?;
-        for ((v, u), m) in v.iter().zip(u).zip(m) {
-            *m = self.sample_visible_normal(*v, *u);
-        }
-        Ok(())
-    }
-
-    /// [`g1`](Self::g1) for each view, into `g1`: the same numbers.
-    ///
-    /// # Errors
-    /// [`BatchError`] if the slices are not of one length; `g1` is then untouched.
-    fn g1_batch(&self, v: &[Vec3], g1: &mut [f32]) -> Result<(), BatchError> {
-        same_lengths(&[("v", v.len()), ("g1", g1.len())])?;
-        for (v, g1) in v.iter().zip(g1) {
-            *g1 = self.g1(*v);
-        }
-        Ok(())
+    /// For the lobes of this crate: whether the mean absolute slope, in the rougher direction, is
+    /// below 1e-3 (for GGX: α < 1e-3), so is the slope of the mean normal, and 1 − G1 is at most
+    /// 2.5e-3 where cos θ = 0.01. A mirror returns all light; just above this limit one bounce
+    /// returns it to 6e-3 at cos θ ≥ 0.01, whatever γ. The surface brightens by that where a
+    /// texture of roughness crosses the limit.
+    fn is_effectively_smooth(&self) -> bool {
+        false
     }
 }

@@ -8,6 +8,7 @@ use microfacet_core::{Masking, Skew, saturated};
 use microfacet_tables::axis::half_tangent::Slope;
 use wide::f32x4;
 
+use super::batch::Batch;
 use super::below_horizon::{ExcessShare, Numbers, SlopeBelowHorizon};
 use super::distribution::{Facet, MicrofacetDistribution, SMOOTH, is_hidden, visible_density};
 use super::horizon::{HORIZON, above_horizon};
@@ -15,8 +16,11 @@ use super::key::LobeKey;
 use super::lanes::views::Views;
 use super::lanes::{first_three, sum};
 use super::matrix::{ENTRIES, Matrix};
+use super::reflecting::Reflecting;
 use super::student_t::{Stretched, StudentT};
+use super::tabulated::Tabulated;
 use crate::error::MaterialError;
+use crate::vector::vec3;
 
 /// An Ellipsoid lobe: that of Walter et al. 2015 (supplemental material of
 /// <https://doi.org/10.1145/2815618>) at γ = 2, a skewed Student-t for other γ, a skewed Beckmann
@@ -166,7 +170,8 @@ impl Ellipsoid {
 
 impl MicrofacetDistribution for Ellipsoid {
     #[inline]
-    fn d(&self, m: Vec3) -> f32 {
+    fn d(&self, m: impl Into<[f32; 3]>) -> f32 {
+        let m = vec3(m);
         if !(m.z > 0.0) {
             return 0.0;
         }
@@ -178,7 +183,8 @@ impl MicrofacetDistribution for Ellipsoid {
     ///
     /// Without the clamp a lobe that leans away would return more light than it receives.
     #[inline]
-    fn g1(&self, v: Vec3) -> f32 {
+    fn g1(&self, v: impl Into<[f32; 3]>) -> f32 {
+        let v = vec3(v);
         if !(v.z > 0.0) {
             return 0.0;
         }
@@ -187,23 +193,31 @@ impl MicrofacetDistribution for Ellipsoid {
     }
 
     #[inline(always)]
-    fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+    fn sample_visible_normal(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> [f32; 3] {
+        let v = vec3(v);
         if self.lobe.slices.peeled {
-            return self.sample_heavy(v.x, v.y, v.z, u);
+            return self.sample_heavy(v.x, v.y, v.z, u).to_array();
         }
         let m = self.sample_fast::<false>(v, u);
-        m.map_or_else(|| self.sample_general(v.x, v.y, v.z, u), first_three)
+        m.map_or_else(|| self.sample_general(v.x, v.y, v.z, u), first_three).to_array()
     }
 
     #[inline]
-    fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+    fn visible_normal_pdf(&self, v: impl Into<[f32; 3]>, m: impl Into<[f32; 3]>) -> f32 {
+        let (v, m) = (vec3(v), vec3(m));
         let w = self.to_unit(v);
         visible_density(v.dot(m), self.d(m), self.inverse_area(w, &self.lobe.stretch(w)))
     }
 
     /// G2(v, l)·area/(v·n) ≤ 1.
     #[inline]
-    fn reflection_weight(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
+    fn reflection_weight(
+        &self,
+        v: impl Into<[f32; 3]>,
+        l: impl Into<[f32; 3]>,
+        masking: Masking,
+    ) -> f32 {
+        let (v, l) = (vec3(v), vec3(l));
         if !(v.z > 0.0) {
             return 0.0;
         }
@@ -213,7 +227,14 @@ impl MicrofacetDistribution for Ellipsoid {
 
     /// From `visible_normal_pdf` and `reflection_weight`, with the area of the view computed once.
     #[inline]
-    fn facet(&self, v: Vec3, m: Vec3, l: Vec3, masking: Masking) -> Facet {
+    fn facet(
+        &self,
+        v: impl Into<[f32; 3]>,
+        m: impl Into<[f32; 3]>,
+        l: impl Into<[f32; 3]>,
+        masking: Masking,
+    ) -> Facet {
+        let (v, m, l) = (vec3(v), vec3(m), vec3(l));
         if !(v.z > 0.0 && m.z > 0.0) {
             return Facet::default();
         }
@@ -225,9 +246,19 @@ impl MicrofacetDistribution for Ellipsoid {
         Facet { density: saturated(d * inverse_area), weight }
     }
 
+    fn is_effectively_smooth(&self) -> bool {
+        let Matrix { p, q, r, x, y } = self.matrix;
+        self.lobe.is_smooth(p.max(q.abs()).max(r)) && x.abs().max(y.abs()) < SMOOTH
+    }
+}
+
+impl Reflecting for Ellipsoid {}
+
+impl Tabulated for Ellipsoid {
     /// That of the untransformed lobe times the ratio of solid angles. For views below the lobe's
     /// horizon samples have the analytic density.
-    fn table_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+    fn table_pdf(&self, v: impl Into<[f32; 3]>, m: impl Into<[f32; 3]>) -> f32 {
+        let (v, m) = (vec3(v), vec3(m));
         let w = self.to_unit(v);
         if !(m.z > 0.0 && w.z >= 0.0) {
             return self.visible_normal_pdf(v, m);
@@ -248,12 +279,9 @@ impl MicrofacetDistribution for Ellipsoid {
         LobeKey::Tilted { matrix: self.matrix.entries(), gamma: self.gamma() }
     }
 
-    fn is_effectively_smooth(&self) -> bool {
-        let Matrix { p, q, r, x, y } = self.matrix;
-        self.lobe.is_smooth(p.max(q.abs()).max(r)) && x.abs().max(y.abs()) < SMOOTH
-    }
-
     fn bytes(&self) -> usize {
         self.lobe.bytes()
     }
 }
+
+impl Batch for Ellipsoid {}

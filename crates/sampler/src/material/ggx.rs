@@ -6,13 +6,17 @@ use glam::Vec3;
 use microfacet_core::math::{sqrt, unit};
 use microfacet_core::{Masking, Roughness, saturated};
 
+use super::batch::Batch;
 use super::distribution::{Facet, MicrofacetDistribution, SMOOTH, visible_density};
 use super::horizon::{above_horizon, face};
 use super::key::LobeKey;
+use super::reflecting::Reflecting;
 use super::roughness::checked;
 use super::student_t::{LONG, LONGEST, SHORT};
+use super::tabulated::Tabulated;
 use crate::elementary::turn;
 use crate::error::MaterialError;
+use crate::vector::vec3;
 
 /// The smallest 1 − u₁: keeps a normal off the horizon, where its length may vanish.
 const LAST: f32 = 1.0 / 16_777_216.0;
@@ -95,7 +99,8 @@ impl Ggx {
 
 impl MicrofacetDistribution for Ggx {
     #[inline]
-    fn d(&self, m: Vec3) -> f32 {
+    fn d(&self, m: impl Into<[f32; 3]>) -> f32 {
+        let m = vec3(m);
         if !(m.z > 0.0) {
             return 0.0;
         }
@@ -103,46 +108,58 @@ impl MicrofacetDistribution for Ggx {
     }
 
     #[inline]
-    fn g1(&self, v: Vec3) -> f32 {
+    fn g1(&self, v: impl Into<[f32; 3]>) -> f32 {
+        let v = vec3(v);
         (v.z.max(0.0) * self.inverse_area(v)).min(1.0)
     }
 
     // Without inlining the view would go from the caller's registers through memory.
     #[inline(always)]
-    fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
-        face(above_horizon(self.along(v, u)), Vec3::new(v.x, v.y, v.z.max(0.0)))
+    fn sample_visible_normal(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> [f32; 3] {
+        let v = vec3(v);
+        face(above_horizon(self.along(v, u)), Vec3::new(v.x, v.y, v.z.max(0.0))).to_array()
     }
 
     #[inline]
-    fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+    fn visible_normal_pdf(&self, v: impl Into<[f32; 3]>, m: impl Into<[f32; 3]>) -> f32 {
+        let (v, m) = (vec3(v), vec3(m));
         visible_density(v.dot(m), self.d(m), self.inverse_area(v))
     }
 
     #[inline(always)]
-    fn facet(&self, v: Vec3, m: Vec3, l: Vec3, masking: Masking) -> Facet {
+    fn facet(
+        &self,
+        v: impl Into<[f32; 3]>,
+        m: impl Into<[f32; 3]>,
+        l: impl Into<[f32; 3]>,
+        masking: Masking,
+    ) -> Facet {
+        let (v, m, l) = (vec3(v), vec3(m), vec3(l));
         if !(m.z > 0.0) {
             return Facet::default();
         }
         Facet::of_g1(self.d_of(m, m.dot(m)), v, [self.g1(v), self.g1(l)], masking)
     }
 
-    #[inline(always)]
-    fn sample_reflecting_normal(&self, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
-        (self.along(v, u), 1.0)
-    }
-
-    fn key(&self) -> LobeKey {
-        LobeKey::of_family(self.alpha(), 2.0)
-    }
-
     fn is_effectively_smooth(&self) -> bool {
         self.alpha_x.max(self.alpha_y) < SMOOTH
     }
+}
 
-    fn bytes(&self) -> usize {
-        0
+impl Reflecting for Ggx {
+    #[inline(always)]
+    fn sample_reflecting_normal(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> ([f32; 3], f32) {
+        (self.along(vec3(v), u).to_array(), 1.0)
     }
 }
+
+impl Tabulated for Ggx {
+    fn key(&self) -> LobeKey {
+        LobeKey::of_family(self.alpha(), 2.0)
+    }
+}
+
+impl Batch for Ggx {}
 
 /// A stretched view of unit length, since the squares of a short or long one would leave the range
 /// of f32; the null vector, and one whose own square does, count as normal incidence.

@@ -1,10 +1,10 @@
 //! Any of the lobes.
 
-use glam::Vec3;
 use microfacet_core::Masking;
 
 use super::{
-    Bounded, Ellipsoid, Facet, Ggx, LobeKey, MicrofacetDistribution, Radial, Smooth, StudentT,
+    Batch, Bounded, Ellipsoid, Facet, Ggx, LobeKey, MicrofacetDistribution, Radial, Reflecting,
+    Smooth, StudentT, Tabulated,
 };
 use crate::error::BatchError;
 
@@ -55,76 +55,92 @@ macro_rules! each {
 
 impl MicrofacetDistribution for Lobe {
     #[inline]
-    fn d(&self, m: Vec3) -> f32 {
+    fn d(&self, m: impl Into<[f32; 3]>) -> f32 {
         each!(self, lobe => lobe.d(m))
     }
 
     #[inline]
-    fn g1(&self, v: Vec3) -> f32 {
+    fn g1(&self, v: impl Into<[f32; 3]>) -> f32 {
         each!(self, lobe => lobe.g1(v))
     }
 
     #[inline]
-    fn g2(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
-        each!(self, lobe => lobe.g2(v, l, masking))
-    }
-
-    #[inline]
-    fn sample_with_pdf(&self, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
-        each!(self, lobe => lobe.sample_with_pdf(v, u))
-    }
-
-    #[inline]
-    fn reflection_weight(&self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
+    fn reflection_weight(
+        &self,
+        v: impl Into<[f32; 3]>,
+        l: impl Into<[f32; 3]>,
+        masking: Masking,
+    ) -> f32 {
         each!(self, lobe => lobe.reflection_weight(v, l, masking))
     }
 
     #[inline]
-    fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+    fn sample_visible_normal(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> [f32; 3] {
         each!(self, lobe => lobe.sample_visible_normal(v, u))
     }
 
     #[inline]
-    fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+    fn visible_normal_pdf(&self, v: impl Into<[f32; 3]>, m: impl Into<[f32; 3]>) -> f32 {
         each!(self, lobe => lobe.visible_normal_pdf(v, m))
     }
 
-    fn table_pdf(&self, v: Vec3, m: Vec3) -> f32 {
-        each!(self, lobe => lobe.table_pdf(v, m))
-    }
-
     #[inline]
-    fn facet(&self, v: Vec3, m: Vec3, l: Vec3, masking: Masking) -> Facet {
+    fn facet(
+        &self,
+        v: impl Into<[f32; 3]>,
+        m: impl Into<[f32; 3]>,
+        l: impl Into<[f32; 3]>,
+        masking: Masking,
+    ) -> Facet {
         each!(self, lobe => lobe.facet(v, m, l, masking))
     }
 
+    fn is_effectively_smooth(&self) -> bool {
+        each!(self, lobe => lobe.is_effectively_smooth())
+    }
+}
+
+impl Reflecting for Lobe {
     #[inline]
-    fn sample_reflecting_normal(&self, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
+    fn sample_reflecting_normal(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> ([f32; 3], f32) {
         each!(self, lobe => lobe.sample_reflecting_normal(v, u))
     }
 
     #[inline]
-    fn reflecting_share(&self, v: Vec3) -> f32 {
+    fn reflecting_share(&self, v: impl Into<[f32; 3]>) -> f32 {
         each!(self, lobe => lobe.reflecting_share(v))
+    }
+}
+
+impl Tabulated for Lobe {
+    fn table_pdf(&self, v: impl Into<[f32; 3]>, m: impl Into<[f32; 3]>) -> f32 {
+        each!(self, lobe => lobe.table_pdf(v, m))
     }
 
     fn key(&self) -> LobeKey {
         each!(self, lobe => lobe.key())
     }
 
-    fn is_effectively_smooth(&self) -> bool {
-        each!(self, lobe => lobe.is_effectively_smooth())
-    }
-
     fn bytes(&self) -> usize {
-        each!(self, lobe => MicrofacetDistribution::bytes(lobe))
+        each!(self, lobe => lobe.bytes())
+    }
+}
+
+impl Batch for Lobe {
+    fn sample_batch<V: Copy + Into<[f32; 3]>, M: From<[f32; 3]>>(
+        &self,
+        v: &[V],
+        u: &[[f32; 2]],
+        m: &mut [M],
+    ) -> Result<(), BatchError> {
+        each!(self, lobe => Batch::sample_batch(lobe, v, u, m))
     }
 
-    fn sample_batch(&self, v: &[Vec3], u: &[[f32; 2]], m: &mut [Vec3]) -> Result<(), BatchError> {
-        each!(self, lobe => MicrofacetDistribution::sample_batch(lobe, v, u, m))
-    }
-
-    fn g1_batch(&self, v: &[Vec3], g1: &mut [f32]) -> Result<(), BatchError> {
+    fn g1_batch<V: Copy + Into<[f32; 3]>>(
+        &self,
+        v: &[V],
+        g1: &mut [f32],
+    ) -> Result<(), BatchError> {
         each!(self, lobe => lobe.g1_batch(v, g1))
     }
 }

@@ -1,6 +1,7 @@
 //! The lobes of materials: distributions of normals with fixed parameters.
 //!
-//! [`distribution`] is the trait of all lobes. [`student_t`] reads slices of the tables
+//! [`distribution`] is the trait of all lobes; [`reflecting`], [`tabulated`] and [`batch`] are what
+//! BSDFs, tables and slices of views ask beyond it. [`student_t`] reads slices of the tables
 //! ([`slices`]) for masking and visible normals, for the shapes that all of them cover
 //! ([`coverage`]); [`lanes`] are its lookups in SIMD, with the part that no table holds from
 //! [`heavy`], and [`horizon`] corrects normals that rounding has moved out of their domain.
@@ -10,6 +11,7 @@
 //! and [`ggx`] and the [`smooth`] surface need none. [`key`] identifies a lobe to albedo tables,
 //! and [`shape`] is what exports write of one.
 
+mod batch;
 mod below_horizon;
 mod bounded;
 pub(crate) mod coverage;
@@ -24,13 +26,16 @@ mod lobe;
 mod matrix;
 mod normals;
 mod radial;
+mod reflecting;
 mod roughness;
 pub(crate) mod shape;
 pub(crate) mod slices;
 mod smooth;
 mod student_t;
 mod table_pdf;
+mod tabulated;
 
+pub use batch::Batch;
 pub use bounded::{Bounded, BoundedView};
 pub use distribution::{Facet, MicrofacetDistribution};
 pub use ellipsoid::Ellipsoid;
@@ -38,5 +43,7 @@ pub use ggx::Ggx;
 pub use key::LobeKey;
 pub use lobe::Lobe;
 pub use radial::Radial;
+pub use reflecting::Reflecting;
 pub use smooth::Smooth;
 pub use student_t::StudentT;
+pub use tabulated::Tabulated;

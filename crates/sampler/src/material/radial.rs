@@ -12,12 +12,16 @@ use microfacet_tables::axis::hermite::{Node, between_rows, hermite, locate, make
 use microfacet_tables::axis::{HalfTangent, MirroredRoot, Rational};
 use microfacet_tables::{Kind, LobeSpec, Mapping, Table};
 
+use super::batch::Batch;
 use super::distribution::{MicrofacetDistribution, visible_density};
 use super::key::LobeKey;
+use super::reflecting::Reflecting;
 use super::roughness::checked;
 use super::slices::{Slice, Slices};
 use super::student_t::StudentT;
+use super::tabulated::Tabulated;
 use crate::error::MaterialError;
+use crate::vector::vec3;
 
 /// A lobe of any isotropic distribution: GTR, Gauss, Schlick or a measured one.
 ///
@@ -130,7 +134,8 @@ impl Radial {
 impl MicrofacetDistribution for Radial {
     /// Interpolated.
     #[inline]
-    fn d(&self, m: Vec3) -> f32 {
+    fn d(&self, m: impl Into<[f32; 3]>) -> f32 {
+        let m = vec3(m);
         if !(m.z > 0.0) {
             return 0.0;
         }
@@ -146,32 +151,41 @@ impl MicrofacetDistribution for Radial {
     }
 
     #[inline]
-    fn g1(&self, v: Vec3) -> f32 {
+    fn g1(&self, v: impl Into<[f32; 3]>) -> f32 {
+        let v = vec3(v);
         self.plane.g1(v)
     }
 
     #[inline]
-    fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+    fn sample_visible_normal(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> [f32; 3] {
+        let v = vec3(v);
         let view = self.plane.stretch(v);
         let x = self.plane.sample_slope(&view, u[0]);
-        self.plane.assemble(&view, x, self.sample_across(x, u[1]))
+        self.plane.assemble(&view, x, self.sample_across(x, u[1])).to_array()
     }
 
     /// From the tables' D and G1.
     #[inline]
-    fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+    fn visible_normal_pdf(&self, v: impl Into<[f32; 3]>, m: impl Into<[f32; 3]>) -> f32 {
+        let (v, m) = (vec3(v), vec3(m));
         visible_density(v.dot(m), self.d(m), self.plane.inverse_area(&self.plane.stretch(v)))
-    }
-
-    fn key(&self) -> LobeKey {
-        LobeKey::Upright(LobeSpec::outside(self.name.clone()))
     }
 
     fn is_effectively_smooth(&self) -> bool {
         self.plane.is_smooth(self.sigma())
+    }
+}
+
+impl Reflecting for Radial {}
+
+impl Tabulated for Radial {
+    fn key(&self) -> LobeKey {
+        LobeKey::Upright(LobeSpec::outside(self.name.clone()))
     }
 
     fn bytes(&self) -> usize {
         self.plane.bytes() + size_of_val(&self.across[..]) + size_of_val(&self.density[..])
     }
 }
+
+impl Batch for Radial {}

@@ -1,9 +1,10 @@
 //! The smooth surface, σ = 0: its only normal is n.
 
-use glam::Vec3;
-
+use super::batch::Batch;
 use super::distribution::MicrofacetDistribution;
 use super::key::LobeKey;
+use super::reflecting::Reflecting;
+use super::tabulated::Tabulated;
 
 /// A smooth surface, the limit σ → 0 of every lobe: all microfacets face along n, and a BSDF of it
 /// has only delta events.
@@ -14,32 +15,34 @@ use super::key::LobeKey;
 pub struct Smooth;
 
 impl MicrofacetDistribution for Smooth {
-    fn d(&self, _m: Vec3) -> f32 {
+    fn d(&self, _m: impl Into<[f32; 3]>) -> f32 {
         0.0
     }
 
-    fn g1(&self, v: Vec3) -> f32 {
-        if v.z > 0.0 { 1.0 } else { 0.0 }
+    fn g1(&self, v: impl Into<[f32; 3]>) -> f32 {
+        if v.into()[2] > 0.0 { 1.0 } else { 0.0 }
     }
 
     /// n, whatever the view.
-    fn sample_visible_normal(&self, _v: Vec3, _u: [f32; 2]) -> Vec3 {
-        Vec3::Z
+    fn sample_visible_normal(&self, _v: impl Into<[f32; 3]>, _u: [f32; 2]) -> [f32; 3] {
+        [0.0, 0.0, 1.0]
     }
 
-    fn visible_normal_pdf(&self, _v: Vec3, _m: Vec3) -> f32 {
+    fn visible_normal_pdf(&self, _v: impl Into<[f32; 3]>, _m: impl Into<[f32; 3]>) -> f32 {
         0.0
-    }
-
-    fn key(&self) -> LobeKey {
-        LobeKey::of_family([0.0; 2], 2.0)
     }
 
     fn is_effectively_smooth(&self) -> bool {
         true
     }
+}
 
-    fn bytes(&self) -> usize {
-        0
+impl Reflecting for Smooth {}
+
+impl Tabulated for Smooth {
+    fn key(&self) -> LobeKey {
+        LobeKey::of_family([0.0; 2], 2.0)
     }
 }
+
+impl Batch for Smooth {}

@@ -19,15 +19,19 @@ use microfacet_tables::axis::half_tangent::Slope;
 use microfacet_tables::axis::hermite::{between_rows, hermite, horner, locate, split};
 use wide::f32x4;
 
+use super::batch::Batch;
 use super::distribution::{
     Facet, GRAZING, MicrofacetDistribution, SMOOTH, SMOOTH_MASKED, is_hidden, visible_density,
 };
 use super::horizon::above_horizon;
 use super::key::LobeKey;
 use super::normals::Normals;
+use super::reflecting::Reflecting;
 use super::roughness::checked;
 use super::slices::Slices;
+use super::tabulated::Tabulated;
 use crate::error::{BatchError, MaterialError, same_lengths};
+use crate::vector::vec3;
 
 /// A Student-t lobe with fixed roughness and shape, holding only the slices of the tables it needs.
 ///
@@ -143,12 +147,12 @@ impl StudentT {
     /// table; the rest draws from the closed-form heavy part.
     ///
     /// 1 where the whole distribution is tabulated.
-    pub fn tabulated_share(&self, v: Vec3) -> f32 {
+    pub fn tabulated_share(&self, v: impl Into<[f32; 3]>) -> f32 {
         if !self.slices.peeled {
             return 1.0;
         }
         // The same bits as in the sampler: the next number belongs to the heavy part.
-        let at = self.view::<true>(v).at.to_array()[0];
+        let at = self.view::<true>(vec3(v)).at.to_array()[0];
         unit(1.0 - self.slices.heavy.share(at))
     }
 
@@ -270,7 +274,8 @@ impl MicrofacetDistribution for StudentT {
     ///
     /// For γ < 2 D grows without limit towards the horizon and overflows to `f32::MAX`, not to ∞.
     #[inline]
-    fn d(&self, m: Vec3) -> f32 {
+    fn d(&self, m: impl Into<[f32; 3]>) -> f32 {
+        let m = vec3(m);
         if !(m.z > 0.0) {
             return 0.0;
         }
@@ -278,8 +283,8 @@ impl MicrofacetDistribution for StudentT {
     }
 
     #[inline(always)]
-    fn g1(&self, v: Vec3) -> f32 {
-        self.g1_of_one(v)
+    fn g1(&self, v: impl Into<[f32; 3]>) -> f32 {
+        self.g1_of_one(vec3(v))
     }
 
     /// A normal visible from `v`, by the inverse CDFs of two slopes at `u[0]` and `u[1]`.
@@ -289,34 +294,63 @@ impl MicrofacetDistribution for StudentT {
     /// chooses between the tabulated part and the closed-form heavy part, and the tilt rises within
     /// each.
     #[inline(always)]
-    fn sample_visible_normal(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
-        self.sample(v, u)
+    fn sample_visible_normal(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> [f32; 3] {
+        self.sample(vec3(v), u).to_array()
     }
 
     #[inline]
-    fn visible_normal_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+    fn visible_normal_pdf(&self, v: impl Into<[f32; 3]>, m: impl Into<[f32; 3]>) -> f32 {
+        let (v, m) = (vec3(v), vec3(m));
         visible_density(v.dot(m), self.d(m), self.inverse_area(&self.stretch(v)))
     }
 
+    #[inline]
+    fn reflection_weight(
+        &self,
+        v: impl Into<[f32; 3]>,
+        l: impl Into<[f32; 3]>,
+        masking: Masking,
+    ) -> f32 {
+        let (v, l) = (vec3(v), vec3(l));
+        let [g1_v, g1_l] = self.g1_of_both(v, l);
+        if v.z > 0.0 { masking.g2_over_g1(g1_v, g1_l) } else { 0.0 }
+    }
+
     #[inline(always)]
-    fn facet(&self, v: Vec3, m: Vec3, l: Vec3, masking: Masking) -> Facet {
+    fn facet(
+        &self,
+        v: impl Into<[f32; 3]>,
+        m: impl Into<[f32; 3]>,
+        l: impl Into<[f32; 3]>,
+        masking: Masking,
+    ) -> Facet {
+        let (v, m, l) = (vec3(v), vec3(m), vec3(l));
         if !(m.z > 0.0) {
             return Facet::default();
         }
         Facet::of_g1(self.d_of(m, m.dot(m)), v, self.g1_of_both(v, l), masking)
     }
 
-    #[inline(always)]
-    fn sample_reflecting_normal(&self, v: Vec3, u: [f32; 2]) -> (Vec3, f32) {
-        (self.sample_along(v, u), 1.0)
+    fn is_effectively_smooth(&self) -> bool {
+        self.is_smooth(self.sigma_x.max(self.sigma_y))
     }
+}
 
+impl Reflecting for StudentT {
+    #[inline(always)]
+    fn sample_reflecting_normal(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> ([f32; 3], f32) {
+        (self.sample_along(vec3(v), u).to_array(), 1.0)
+    }
+}
+
+impl Tabulated for StudentT {
     /// The density with which the sampler draws `m`, the Jacobian of its map.
     ///
     /// An estimator that divides by it is unbiased at any resolution of the tables. The density is
     /// above 0 at every normal that is drawn for a view above the horizon, integrates to 1 over all
     /// m, and costs two searches and a few square roots.
-    fn table_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+    fn table_pdf(&self, v: impl Into<[f32; 3]>, m: impl Into<[f32; 3]>) -> f32 {
+        let (v, m) = (vec3(v), vec3(m));
         if is_hidden(v, m) { 0.0 } else { self.density_of_samples(v, m) }
     }
 
@@ -324,21 +358,28 @@ impl MicrofacetDistribution for StudentT {
         LobeKey::of_family([self.sigma_x, self.sigma_y], self.gamma)
     }
 
-    fn is_effectively_smooth(&self) -> bool {
-        self.is_smooth(self.sigma_x.max(self.sigma_y))
-    }
-
     fn bytes(&self) -> usize {
         self.slices.bytes()
     }
+}
 
-    fn sample_batch(&self, v: &[Vec3], u: &[[f32; 2]], m: &mut [Vec3]) -> Result<(), BatchError> {
+impl Batch for StudentT {
+    fn sample_batch<V: Copy + Into<[f32; 3]>, M: From<[f32; 3]>>(
+        &self,
+        v: &[V],
+        u: &[[f32; 2]],
+        m: &mut [M],
+    ) -> Result<(), BatchError> {
         same_lengths(&[("v", v.len()), ("u", u.len()), ("m", m.len())])?;
         self.sample_all(v, u, m);
         Ok(())
     }
 
-    fn g1_batch(&self, v: &[Vec3], g1: &mut [f32]) -> Result<(), BatchError> {
+    fn g1_batch<V: Copy + Into<[f32; 3]>>(
+        &self,
+        v: &[V],
+        g1: &mut [f32],
+    ) -> Result<(), BatchError> {
         same_lengths(&[("v", v.len()), ("g1", g1.len())])?;
         self.g1_all(v, g1);
         Ok(())

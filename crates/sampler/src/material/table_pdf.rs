@@ -21,6 +21,7 @@ use microfacet_tables::axis::hermite::{Cubic, Node, split};
 use super::distribution::MicrofacetDistribution;
 use super::student_t::{Stretched, StudentT};
 use crate::elementary::{exp2, log2};
+use crate::vector::vec3;
 
 /// A normal's slopes in unit space: in-plane x : z, and across y : z, with t = y/√(z² + s x²).
 struct UnitSlopes {
@@ -119,7 +120,7 @@ impl Place {
 }
 
 impl StudentT {
-    /// [`table_pdf`](MicrofacetDistribution::table_pdf) of a normal that faces the view. This is
+    /// [`table_pdf`](crate::lobe::Tabulated::table_pdf) of a normal that faces the view. This is
     /// not checked, since rounding may put the slope of a drawn normal behind the silhouette.
     pub(crate) fn density_of_samples(&self, v: Vec3, m: Vec3) -> f32 {
         if !(m.z > 0.0) {
@@ -161,14 +162,14 @@ impl StudentT {
         density
     }
 
-    /// The slopes at which the tabulated density ([`table_pdf`](MicrofacetDistribution::table_pdf))
+    /// The slopes at which the tabulated density ([`table_pdf`](crate::lobe::Tabulated::table_pdf))
     /// of a view has joints: unit slopes x in the plane of incidence, ascending, and t ≥ 0 across
     /// it.
     ///
     /// Between joints the density of the samples is smooth, so a quadrature that divides there
     /// converges fast. x may end at ±∞.
-    pub fn table_joints(&self, v: Vec3) -> [Vec<f64>; 2] {
-        let view = self.stretch(v);
+    pub fn table_joints(&self, v: impl Into<[f32; 3]>) -> [Vec<f64>; 2] {
+        let view = self.stretch(vec3(v));
         let Some(rows) = self.rows_at(self.coordinate(&view)) else { return Default::default() };
         let half = self.slices.half_cells + 1;
         let slope = |g: f64, sign: f64| {

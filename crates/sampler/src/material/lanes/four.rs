@@ -21,6 +21,7 @@ use super::views::Views;
 use crate::material::heavy::parts;
 use crate::material::horizon::HORIZON;
 use crate::material::student_t::StudentT;
+use crate::vector::vec3;
 
 pub(crate) const LANES: usize = 4;
 /// How many groups of four go through each stage together.
@@ -28,27 +29,32 @@ const GROUPS: usize = 8;
 
 impl StudentT {
     /// As many normals as there are views; the slices are of the same length.
-    pub(crate) fn sample_all(&self, v: &[Vec3], u: &[[f32; 2]], m: &mut [Vec3]) {
+    pub(crate) fn sample_all<V: Copy + Into<[f32; 3]>, M: From<[f32; 3]>>(
+        &self,
+        v: &[V],
+        u: &[[f32; 2]],
+        m: &mut [M],
+    ) {
         let ((v, v_rest), (u, u_rest)) = (v.as_chunks(), u.as_chunks());
         let (m, m_rest) = m.as_chunks_mut();
         for ((v, u), m) in v.chunks(GROUPS).zip(u.chunks(GROUPS)).zip(m.chunks_mut(GROUPS)) {
             if self.slices.peeled {
-                self.sample_groups::<true>(v, u, m);
+                self.sample_groups::<true, V, M>(v, u, m);
             } else {
-                self.sample_groups::<false>(v, u, m);
+                self.sample_groups::<false, V, M>(v, u, m);
             }
         }
         for ((v, u), m) in v_rest.iter().zip(u_rest).zip(m_rest) {
-            *m = self.sample(*v, *u);
+            *m = self.sample(vec3(*v), *u).to_array().into();
         }
     }
 
     /// At most [`GROUPS`] groups of four, stage by stage.
-    fn sample_groups<const HEAVY: bool>(
+    fn sample_groups<const HEAVY: bool, V: Copy + Into<[f32; 3]>, M: From<[f32; 3]>>(
         &self,
-        v: &[[Vec3; LANES]],
+        v: &[[V; LANES]],
         u: &[[[f32; 2]; LANES]],
-        m: &mut [[Vec3; LANES]],
+        m: &mut [[M; LANES]],
     ) {
         let sigma = [self.sigma_x, self.sigma_y];
         let mut located = [Located::default(); GROUPS];
@@ -68,7 +74,7 @@ impl StudentT {
                 normals = facing(normals, transpose(&v[i]));
             }
             let [x, y, z] = normals.map(f32x4::to_array);
-            *m = core::array::from_fn(|i| Vec3::new(x[i], y[i], z[i]));
+            *m = core::array::from_fn(|i| M::from([x[i], y[i], z[i]]));
         }
     }
 
@@ -247,10 +253,7 @@ pub(crate) fn coefficients(cells: &[Cell], at: [i32; LANES]) -> [f32x4; 4] {
 }
 
 #[inline(always)]
-pub(crate) fn transpose(v: &[Vec3; LANES]) -> [f32x4; 3] {
-    [
-        f32x4::new([v[0].x, v[1].x, v[2].x, v[3].x]),
-        f32x4::new([v[0].y, v[1].y, v[2].y, v[3].y]),
-        f32x4::new([v[0].z, v[1].z, v[2].z, v[3].z]),
-    ]
+pub(crate) fn transpose<V: Copy + Into<[f32; 3]>>(v: &[V; LANES]) -> [f32x4; 3] {
+    let v: [[f32; 3]; LANES] = v.map(Into::into);
+    [0, 1, 2].map(|i| f32x4::new([v[0][i], v[1][i], v[2][i], v[3][i]]))
 }

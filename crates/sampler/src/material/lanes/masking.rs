@@ -9,6 +9,7 @@ use microfacet_tables::axis::hermite::{horner, horner_lanes, split};
 use super::four::{LANES, coefficients, transpose};
 use super::{swap_halves, swap_pairs};
 use crate::material::student_t::StudentT;
+use crate::vector::vec3;
 
 /// Returns 0, the G1 of NaN; cold, so that the common path stays short.
 #[cold]
@@ -77,19 +78,19 @@ impl StudentT {
     }
 
     /// G1 of each view; the slices are of the same length.
-    pub(crate) fn g1_all(&self, v: &[Vec3], g1: &mut [f32]) {
+    pub(crate) fn g1_all<V: Copy + Into<[f32; 3]>>(&self, v: &[V], g1: &mut [f32]) {
         let (v, v_rest) = v.as_chunks::<LANES>();
         let (g1, g1_rest) = g1.as_chunks_mut::<LANES>();
         for (v, g1) in v.iter().zip(g1) {
             *g1 = self.g1_lanes(v);
         }
         for (v, g1) in v_rest.iter().zip(g1_rest) {
-            *g1 = self.g1_of_one(*v);
+            *g1 = self.g1_of_one(vec3(*v));
         }
     }
 
     #[inline(always)]
-    fn g1_lanes(&self, w: &[Vec3; LANES]) -> [f32; LANES] {
+    fn g1_lanes<V: Copy + Into<[f32; 3]>>(&self, w: &[V; LANES]) -> [f32; LANES] {
         let slices = &self.slices;
         let [wx, wy, wz] = transpose(w);
         let [kx, ky] = self.kappa_sigma;
