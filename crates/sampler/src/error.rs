@@ -1,13 +1,13 @@
-//! Errors of requests to the tables of a set.
+//! Errors of requests to the tables of a set, by numbers.
 
-use alloc::string::String;
 use core::fmt;
 
 use microfacet_core::{Masking, SkewError};
 use microfacet_tables::{GAMMA_MIN, Range};
 
-/// Why a set cannot give what was asked for: a lobe or an albedo.
-#[derive(Clone, PartialEq)]
+/// Why a set cannot give a lobe or an albedo, in numbers: what was asked for, and what comes nearest.
+#[derive(Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum MaterialError {
     /// A roughness, or an entry of an ellipsoid's matrix, out of the range of single precision, or
     /// NaN.
@@ -20,36 +20,15 @@ pub enum MaterialError {
     },
     /// γ ≤ 3/2 or NaN: no member of the family.
     Gamma(f64),
-    /// The material's distribution has no albedo of the kind that was asked for.
-    OtherDistribution {
-        /// The material.
-        name: String,
-        /// Its distribution.
-        distribution: String,
-    },
-    /// A table of a material's own distribution is missing from the set.
-    NoTable(String),
-    /// No table of the set holds the albedo of this dielectric.
-    DielectricNotCovered {
-        /// The index of refraction, inside over outside.
-        eta: f64,
-        /// Its σ.
-        sigma: f64,
-        /// Its γ.
-        gamma: f64,
-        /// The form of masking asked for.
-        masking: Masking,
-        /// The dielectrics that are covered, for that form and any other.
-        covered: String,
-    },
     /// A matrix, or a roughness and angles, that describe no ellipsoid.
     Skew(SkewError),
-    /// γ is legal but no tables of this set serve it; `covered` lists what they serve.
+    /// γ is legal but no tables of this set serve it; [`Tables::shapes`](crate::Tables::shapes)
+    /// lists all that they serve.
     NotCovered {
         /// The γ asked for.
         gamma: f64,
-        /// The ranges or values that are covered.
-        covered: String,
+        /// The nearest below and above that are covered.
+        nearest: [Option<f64>; 2],
     },
     /// The set has no albedo tables for this form of masking.
     MaskingNotCovered {
@@ -65,25 +44,73 @@ pub enum MaterialError {
         /// The smallest and the largest σ that the tables hold, apart from 0, a mirror.
         range: [f64; 2],
     },
-    /// No albedo table of this set covers the pair of σ and γ; `covered` lists the pairs that are
-    /// covered.
+    /// No albedo table of this set covers the pair of σ and γ.
     AlbedoNotCovered {
         /// The σ asked for.
         sigma: f64,
         /// The γ asked for.
         gamma: f64,
-        /// The pairs that are covered.
-        covered: String,
+        /// What the nearest table covers, if there is any.
+        nearest: Option<Covered>,
     },
-    /// A material that has no albedo of its own in this set for the reflectance asked for.
-    NoAlbedo(String),
-    /// No material of that name in the set; `known` lists those it has.
-    NoSuchMaterial {
-        /// The name asked for.
-        name: String,
-        /// Names in the set.
-        known: String,
+    /// No table of the set holds the albedo of this dielectric.
+    DielectricNotCovered {
+        /// The index of refraction, inside over outside.
+        eta: f64,
+        /// Its σ.
+        sigma: f64,
+        /// Its γ.
+        gamma: f64,
+        /// The form of masking asked for.
+        masking: Masking,
+        /// What the nearest table covers, if there is any.
+        nearest: Option<Covered>,
     },
+    /// A given table is of another kind than asked for, or does not hold the material.
+    OtherTable {
+        /// The σ asked for.
+        sigma: f64,
+        /// The γ asked for.
+        gamma: f64,
+    },
+}
+
+/// The materials whose albedos a table holds: each range from the smallest to the largest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Covered {
+    /// Shapes.
+    pub gamma: [f64; 2],
+    /// Roughnesses; the table also holds σ = 0, a mirror, where they begin at the smallest that a
+    /// lobe has.
+    pub sigma: [f64; 2],
+    /// Indices of refraction, of a table of dielectrics.
+    pub eta: Option<[f64; 2]>,
+    /// The form of masking.
+    pub masking: Masking,
+}
+
+impl fmt::Display for Covered {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { gamma, sigma, eta, masking } = self;
+        if let Some(eta) = eta {
+            write!(f, "index {} with ", Range(*eta))?;
+        }
+        write!(f, "gamma {} with sigma {}", Range(*gamma), Range(*sigma))?;
+        if eta.is_some() { write!(f, " and {masking} masking") } else { Ok(()) }
+    }
+}
+
+/// What the nearest table covers, at the end of a sentence.
+struct Nearest<'a>(&'a Option<Covered>);
+
+impl fmt::Display for Nearest<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Some(covered) => write!(f, "; the nearest that it holds is {covered}"),
+            None => write!(f, "; it holds none"),
+        }
+    }
 }
 
 impl fmt::Display for MaterialError {
@@ -98,29 +125,25 @@ impl fmt::Display for MaterialError {
                 f,
                 "gamma = {x}: the shape must lie in (1.5, inf]; 2 is GGX, inf is Beckmann"
             ),
-            Self::OtherDistribution { name, distribution } => write!(
-                f,
-                "material \"{name}\" is of the kind {distribution}, which has no dielectric albedo of \
-                 its own; only round Student-t lobes refract"
-            ),
-            Self::NoTable(name) => {
-                write!(f, "table `{name}` is missing from this set; bake it again")
-            }
-            Self::DielectricNotCovered { eta, sigma, gamma, masking, covered } => write!(
-                f,
-                "no table of this set holds the albedo of a dielectric of index {eta} (in [0, inf]) with sigma {sigma}, gamma {gamma} \
-                 and {masking} masking; it holds {covered}"
-            ),
             Self::Skew(why) => why.fmt(f),
-            Self::NotCovered { gamma, covered } if *gamma < GAMMA_MIN => write!(
+            Self::NotCovered { gamma, .. } if *gamma < GAMMA_MIN => write!(
                 f,
                 "gamma = {gamma} is not covered by any tables, which begin at {GAMMA_MIN}: below, almost every visible normal \
-                 lies within rounding of the horizon; this set serves {covered}; take gamma = {GAMMA_MIN} or more"
+                 lies within rounding of the horizon; take gamma = {GAMMA_MIN} or more"
             ),
-            Self::NotCovered { gamma, covered } => write!(
-                f,
-                "gamma = {gamma} is not covered by the tables of this set, which serve {covered}"
-            ),
+            Self::NotCovered { gamma, nearest } => {
+                write!(f, "gamma = {gamma} is not covered by the tables of this set")?;
+                let at = |gamma: &f64| Range([*gamma; 2]);
+                match nearest {
+                    [Some(low), Some(high)] => {
+                        write!(f, "; the nearest that it serves are {} and {}", at(low), at(high))
+                    }
+                    [Some(one), None] | [None, Some(one)] => {
+                        write!(f, "; the nearest that it serves is {}", at(one))
+                    }
+                    [None, None] => write!(f, ", which serve no shape"),
+                }
+            }
             Self::MaskingNotCovered { masking, other: Some(other) } => {
                 write!(f, "this set has no albedo tables for {masking} masking, only for {other}")
             }
@@ -133,16 +156,21 @@ impl fmt::Display for MaterialError {
                  bake a set whose recipe holds it",
                 Range(*range)
             ),
-            Self::AlbedoNotCovered { sigma, gamma, covered } => write!(
+            Self::AlbedoNotCovered { sigma, gamma, nearest } => write!(
                 f,
-                "sigma = {sigma:?} with gamma = {gamma} is not covered by the albedo tables of this set, which hold {covered}"
+                "sigma = {sigma:?} with gamma = {gamma} is not covered by the albedo tables of this set{}",
+                Nearest(nearest)
             ),
-            Self::NoAlbedo(name) => {
-                write!(f, "material \"{name}\" has no such albedo in this set")
-            }
-            Self::NoSuchMaterial { name, known } => {
-                write!(f, "no material \"{name}\" in this set, which holds {known}")
-            }
+            Self::DielectricNotCovered { eta, sigma, gamma, masking, nearest } => write!(
+                f,
+                "no table of this set holds the albedo of a dielectric of index {eta} (in [0, inf]) with sigma {sigma}, gamma {gamma} \
+                 and {masking} masking{}",
+                Nearest(nearest)
+            ),
+            Self::OtherTable { sigma, gamma } => write!(
+                f,
+                "the table does not hold the albedo of sigma = {sigma} and gamma = {gamma}"
+            ),
         }
     }
 }

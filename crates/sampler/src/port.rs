@@ -7,6 +7,7 @@ use crate::material::slices;
 use crate::{MaterialError, Tables};
 
 pub use crate::albedo::shape::ShapeAlbedo;
+pub use crate::bsdf::steep_cosine;
 pub use crate::material::shape::{HeavyTables, ShapeTables};
 
 /// The tables that a lobe of one shape reads: of masking, of slopes in the plane of incidence, and
@@ -15,5 +16,5 @@ pub use crate::material::shape::{HeavyTables, ShapeTables};
 /// # Errors
 /// As [`Tables::student_t`].
 pub fn tables_of_shape(tables: &Tables, gamma: f64) -> Result<[&Table; 3], MaterialError> {
-    slices::tables_of_shape(tables.tables(), gamma)
+    slices::tables_of_shape(tables.searched(), gamma)
 }

@@ -9,6 +9,7 @@ use microfacet_core::shape::s_of_gamma;
 use microfacet_core::{Roughness, Skew};
 use microfacet_tables::{Kind, LoadError, LobeSpec, MaterialEntry, Provenance, Table, decode};
 
+use crate::bsdf::BindError;
 use crate::error::MaterialError;
 use crate::material::{Ellipsoid, Ggx, Lobe, Radial, Smooth, StudentT, coverage};
 
@@ -19,21 +20,22 @@ pub const DEFAULT_SET: &[u8] = include_bytes!("../data/default.safetensors");
 /// A set of tables, loaded and checked.
 ///
 /// ```
-/// use microfacet_sampler::glam::Vec3;
 /// use microfacet_sampler::{MicrofacetDistribution, Tables};
 /// # #[cfg(feature = "embedded")] {
 /// let tables = Tables::embedded();
 /// let glass = tables.student_t(0.454, 3.0)?;
-/// let v = Vec3::new(0.6, 0.0, 0.8);
+/// let v = [0.6, 0.0, 0.8];
 /// let (m, pdf) = glass.sample_with_pdf(v, [0.3, 0.7]);
-/// assert!(v.dot(m) > 0.0 && pdf > 0.0);
+/// assert!(m[2] > 0.0 && pdf > 0.0);
 /// # }
 /// # Ok::<(), microfacet_sampler::MaterialError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tables {
     provenance: Provenance,
+    /// The tables of the set, then those of its [fallback](Tables::with_fallback).
     tables: Vec<Table>,
+    own: usize,
 }
 
 impl Tables {
@@ -45,7 +47,7 @@ impl Tables {
     pub fn embedded() -> Self {
         let (provenance, tables) =
             decode(DEFAULT_SET, false).expect("the embedded tables are tested");
-        Self { provenance, tables }
+        Self::of(provenance, tables)
     }
 
     /// Reads a set from the bytes of a safetensors file written by `microfacet-bake`.
@@ -57,7 +59,7 @@ impl Tables {
     /// size.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, LoadError> {
         let (provenance, tables) = decode(bytes, true)?;
-        Ok(Self { provenance, tables })
+        Ok(Self::of(provenance, tables))
     }
 
     /// Makes a set from tables, such as those that a bake has just filled.
@@ -68,14 +70,29 @@ impl Tables {
         for table in &tables {
             table.validate()?;
         }
-        Ok(Self { provenance, tables })
+        Ok(Self::of(provenance, tables))
+    }
+
+    fn of(provenance: Provenance, tables: Vec<Table>) -> Self {
+        Self { provenance, own: tables.len(), tables }
+    }
+
+    /// This set with another one behind it: lookups that its own tables do not cover are made in
+    /// those of `fallback`, such as the [default set](Self::embedded).
+    ///
+    /// For lookups alone: [`tables`](Self::tables), names of materials and what is written to a
+    /// file remain those of the set itself. A second fallback comes behind the first.
+    #[must_use]
+    pub fn with_fallback(mut self, fallback: &Self) -> Self {
+        self.tables.extend_from_slice(&fallback.tables);
+        self
     }
 
     /// The set of the named materials alone, without tables that none of them reads.
     ///
     /// # Errors
-    /// [`MaterialError::NoSuchMaterial`] naming those that exist.
-    pub fn only(mut self, names: &[&str]) -> Result<Self, MaterialError> {
+    /// [`BindError::NoSuchMaterial`] naming those that exist.
+    pub fn only(mut self, names: &[&str]) -> Result<Self, BindError> {
         let mut kept: Vec<MaterialEntry> = Vec::new();
         for (i, name) in names.iter().enumerate() {
             if !names[..i].contains(name) {
@@ -83,21 +100,27 @@ impl Tables {
             }
         }
         let lobes: Vec<LobeSpec> = kept.iter().map(|entry| entry.lobe.tabulated()).collect();
+        let fallback = self.tables.split_off(self.own);
         self.tables.retain(|Table { subject, .. }| {
             subject.lobe.is_family() || lobes.iter().any(|lobe| subject.lobe.contains(lobe))
         });
+        self.own = self.tables.len();
+        self.tables.extend(fallback);
         self.provenance.materials = kept;
         Ok(self)
     }
 
-    /// One set of the materials and tables of several sets; a table that several of them have is
-    /// kept once.
+    /// One set of the materials and tables of several sets, without their fallbacks; a table that
+    /// several of them have is kept once.
     ///
     /// # Errors
     /// [`LoadError::Invalid`] if two sets have different tables, or different materials, of the
     /// same name, or were baked by different numeric methods.
     pub fn joined(sets: impl IntoIterator<Item = Self>) -> Result<Self, LoadError> {
-        let mut sets = sets.into_iter();
+        let mut sets = sets.into_iter().map(|mut set| {
+            set.tables.truncate(set.own);
+            set
+        });
         let Some(mut all) = sets.next() else {
             return Self::from_tables(Provenance::default(), Vec::new());
         };
@@ -110,7 +133,7 @@ impl Tables {
             tables.iter().enumerate().map(|(i, table)| (table.name.clone(), i)).collect()
         };
         let mut known = named(&all.tables);
-        for Self { provenance, tables } in sets {
+        for Self { provenance, tables, .. } in sets {
             if provenance.numerics != all.provenance.numerics {
                 return Err(different("numeric methods", &provenance.generator));
             }
@@ -128,17 +151,23 @@ impl Tables {
             all.provenance.conventions.extend(provenance.conventions);
         }
         all.provenance.check()?;
+        all.own = all.tables.len();
         Ok(all)
     }
 
     /// The tables of the set.
     pub fn tables(&self) -> &[Table] {
+        &self.tables[..self.own]
+    }
+
+    /// The tables in which lookups search: those of the set, then those of its fallback.
+    pub(crate) fn searched(&self) -> &[Table] {
         &self.tables
     }
 
     /// The first table of a kind.
     pub fn table(&self, kind: Kind) -> Option<&Table> {
-        self.tables.iter().find(|table| table.kind == kind)
+        self.tables().iter().find(|table| table.kind == kind)
     }
 
     /// Where the set comes from.
@@ -215,16 +244,16 @@ impl Tables {
     /// [`lobe`](Self::lobe) for other values.
     ///
     /// # Errors
-    /// [`MaterialError::NoSuchMaterial`] naming those that exist, or what [`lobe`](Self::lobe) and
+    /// [`BindError::NoSuchMaterial`] naming those that exist, or what [`lobe`](Self::lobe) and
     /// [`ellipsoid`](Self::ellipsoid) report.
-    pub fn material(&self, name: &str) -> Result<Lobe, MaterialError> {
+    pub fn material(&self, name: &str) -> Result<Lobe, BindError> {
         let lobe = &self.entry(name)?.lobe;
         match (lobe.theta, &lobe.distribution) {
             (Some(theta), _) => {
                 let skew = Skew::new(lobe.sigma(), theta)?;
                 Ok(self.ellipsoid(skew, lobe.gamma())?.into())
             }
-            (None, None) => self.lobe(lobe.sigma(), lobe.gamma()),
+            (None, None) => Ok(self.lobe(lobe.sigma(), lobe.gamma())?),
             (None, Some(label)) => {
                 let sigma = lobe.roughness.x().min as f32;
                 Ok(Radial::from_tables(&self.tables, sigma, label)?.into())
@@ -232,17 +261,7 @@ impl Tables {
         }
     }
 
-    /// This set, extended by the default set: shapes that its own tables do not cover are read from
-    /// the default set.
-    ///
-    /// For lookups only: names of tables may then repeat, which a file does not allow.
-    #[cfg(feature = "embedded")]
-    pub fn or_embedded(mut self) -> Self {
-        self.tables.extend(Self::embedded().tables);
-        self
-    }
-
-    pub(crate) fn entry(&self, name: &str) -> Result<&MaterialEntry, MaterialError> {
+    pub(crate) fn entry(&self, name: &str) -> Result<&MaterialEntry, BindError> {
         let materials = &self.provenance.materials;
         materials.iter().find(|entry| entry.name == name).ok_or_else(|| {
             // A scene may have thousands of materials.
@@ -257,7 +276,7 @@ impl Tables {
             }
             let known =
                 if known.is_empty() { "no named materials".to_string() } else { known.join(", ") };
-            MaterialError::NoSuchMaterial { name: name.into(), known }
+            BindError::NoSuchMaterial { name: name.into(), known }
         })
     }
 }

@@ -1,7 +1,6 @@
 //! The albedos of one material as functions of the view: a table with the axes of the material
 //! collapsed.
 
-use alloc::format;
 use alloc::vec::Vec;
 
 use glam::Vec3;
@@ -91,7 +90,7 @@ impl<const N: usize> ViewCurve<N> {
     /// Where the table has fewer than N channels, the last albedos are 0.
     ///
     /// # Errors
-    /// [`MaterialError::NoTable`] if the table has more channels, holds moments, or does not cover
+    /// [`MaterialError::OtherTable`] if the table has more channels, holds moments, or does not cover
     /// the material.
     pub fn from_table(
         table: &Table,
@@ -104,7 +103,7 @@ impl<const N: usize> ViewCurve<N> {
         let point = MaterialPoint { sigma, gamma, eta };
         let curve = shares.filter(|reflectance| reflectance.channels().len() <= N);
         let curve = curve.and_then(|_| Curve::new(table, &point));
-        curve.map(Self).ok_or_else(|| missing(table, &point))
+        curve.map(Self).ok_or_else(|| missing(&point))
     }
 
     pub(super) fn new(table: &Table, point: &MaterialPoint) -> Option<Self> {
@@ -170,9 +169,9 @@ pub enum FresnelAlbedo {
 }
 
 /// The error for a table that does not hold what was asked for.
-pub(super) fn missing(table: &Table, point: &MaterialPoint) -> MaterialError {
-    let MaterialPoint { sigma, gamma, .. } = point;
-    MaterialError::NoTable(format!("{} for sigma {sigma} and gamma {gamma}", table.name))
+pub(super) fn missing(point: &MaterialPoint) -> MaterialError {
+    let &MaterialPoint { sigma, gamma, .. } = point;
+    MaterialError::OtherTable { sigma, gamma }
 }
 
 /// All channels of a table, at one material.

@@ -22,6 +22,23 @@ use crate::vector::vec3;
 /// each moment at most 3e-4 at default quality for cos θ ≥ 0.02 and σ ≥ 0.01. Closer to grazing
 /// than the table's first view, μ₀ of [`ViewBlend`](microfacet_tables::axis::ViewBlend), albedos
 /// approach their limits with the power of cos θ that they have there.
+///
+/// [`Bsdf`](crate::Bsdf)s compensate multiple scattering themselves; this is for a BSDF of your own.
+/// Two compensations of the light that one bounce loses are made from it: a factor on the lobe
+/// ([`turquin`](Self::turquin)) and a lobe of its own ([`compensation`](Self::compensation)).
+///
+/// ```
+/// # #[cfg(feature = "embedded")] {
+/// use microfacet_sampler::{Masking, Tables};
+///
+/// let albedo = Tables::embedded().albedo(0.8, 3.0, Masking::HeightCorrelated)?;
+/// let v = [0.6, 0.0, 0.8];
+/// let gold = albedo.moments(v).schlick(0.77, 1.0); // green: F0, F90
+/// let factor = albedo.turquin(v, 0.77);
+/// assert!(albedo.albedo(v) < 1.0 && gold < albedo.albedo(v) && factor > 1.0);
+/// # }
+/// # Ok::<(), microfacet_sampler::MaterialError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Albedo {
     masking: Masking,
@@ -35,11 +52,11 @@ impl Albedo {
     /// ignores σ and γ.
     ///
     /// # Errors
-    /// [`MaterialError::NoTable`] for a table that holds no moments or does not cover the material.
+    /// [`MaterialError::OtherTable`] for a table that holds no moments or does not cover the material.
     pub fn from_table(table: &Table, sigma: f64, gamma: f64) -> Result<Self, MaterialError> {
         let point = MaterialPoint { sigma, gamma, eta: f64::NAN };
         let moments = table.subject.reflectance == Some(Reflectance::Mirror);
-        moments.then(|| Self::new(table, &point)).flatten().ok_or_else(|| missing(table, &point))
+        moments.then(|| Self::new(table, &point)).flatten().ok_or_else(|| missing(&point))
     }
 
     /// `None` where the table does not cover the material.

@@ -1,16 +1,14 @@
 //! Finds the table of a set that holds an albedo.
 
-use alloc::format;
-use alloc::string::{String, ToString};
-use alloc::vec::Vec;
-
 use microfacet_core::Masking;
-use microfacet_tables::{Kind, LobeForm, Mapping, MaterialEntry, Range, Reflectance, Side, Table};
+use microfacet_core::shape::s_of_gamma;
+use microfacet_tables::{Kind, LobeForm, Mapping, MaterialEntry, Reflectance, Side, Table};
 
 use super::curve::{DielectricAlbedo, FresnelAlbedo, MaterialPoint, MaterialWeights, ViewCurve};
 use super::directional::Albedo;
 use super::moments::Moments;
-use crate::error::MaterialError;
+use crate::bsdf::BindError;
+use crate::error::{Covered, MaterialError};
 use crate::tables::Tables;
 
 impl Tables {
@@ -68,12 +66,13 @@ impl Tables {
     /// with a range has the albedo of the round lobe of √(σx σy).
     ///
     /// # Errors
-    /// [`MaterialError::NoSuchMaterial`], [`MaterialError::NoAlbedo`] for a material that was baked
+    /// [`BindError::NoSuchMaterial`], [`BindError::NoAlbedoOf`] for a material that was baked
     /// without albedos, or what [`albedo`](Self::albedo) reports.
-    pub fn material_albedo(&self, name: &str) -> Result<Albedo, MaterialError> {
+    pub fn material_albedo(&self, name: &str) -> Result<Albedo, BindError> {
         let entry = self.entry(name)?;
         if entry.lobe.tabulated().is_family() {
-            return self.albedo(entry.lobe.round_sigma(), entry.lobe.gamma(), entry.masking());
+            let (sigma, gamma) = (entry.lobe.round_sigma(), entry.lobe.gamma());
+            return Ok(self.albedo(sigma, gamma, entry.masking())?);
         }
         self.own(entry, Albedo::new, |reflectance| *reflectance == Reflectance::Mirror)
     }
@@ -86,9 +85,9 @@ impl Tables {
     /// of the round lobe of √(σx σy). For σ = 0 its albedo is that of 1e-8.
     ///
     /// # Errors
-    /// [`MaterialError::NoSuchMaterial`], [`MaterialError::NoAlbedo`] for a material that states no
+    /// [`BindError::NoSuchMaterial`], [`BindError::NoAlbedoOf`] for a material that states no
     /// such reflectance or was baked without albedos.
-    pub fn material_fresnel_albedo(&self, name: &str) -> Result<FresnelAlbedo, MaterialError> {
+    pub fn material_fresnel_albedo(&self, name: &str) -> Result<FresnelAlbedo, BindError> {
         let entry = self.entry(name)?;
         if let Some(eta) = entry.fresnel.and_then(|fresnel| fresnel.middle_index()) {
             return Ok(FresnelAlbedo::Dielectric(self.material_dielectric_albedo(name, eta)?));
@@ -104,20 +103,21 @@ impl Tables {
     /// states.
     ///
     /// # Errors
-    /// [`MaterialError::NoSuchMaterial`], [`MaterialError::OtherDistribution`] for a lobe that has
+    /// [`BindError::NoSuchMaterial`], [`BindError::OtherDistribution`] for a lobe that has
     /// none, or as [`dielectric_albedo`](Self::dielectric_albedo).
     pub fn material_dielectric_albedo(
         &self,
         name: &str,
         eta: f64,
-    ) -> Result<DielectricAlbedo, MaterialError> {
+    ) -> Result<DielectricAlbedo, BindError> {
         let entry = self.entry(name)?;
         if !matches!(entry.lobe.form(), LobeForm::Family | LobeForm::StudentT) {
             let distribution = entry.lobe.distribution.clone();
             let distribution = distribution.unwrap_or_else(|| "ellipsoid".into());
-            return Err(MaterialError::OtherDistribution { name: name.into(), distribution });
+            return Err(BindError::OtherDistribution { name: name.into(), distribution });
         }
-        self.dielectric_albedo(entry.lobe.round_sigma(), entry.lobe.gamma(), eta, entry.masking())
+        let (sigma, gamma) = (entry.lobe.round_sigma(), entry.lobe.gamma());
+        Ok(self.dielectric_albedo(sigma, gamma, eta, entry.masking())?)
     }
 
     /// The albedo of a rough dielectric of index η ∈ [0, ∞], inside over outside, with σ and γ, for
@@ -158,8 +158,9 @@ impl Tables {
             same.then(|| ViewCurve::new(table, &point)).flatten()
         });
         found.ok_or_else(|| {
-            let covered = dielectrics(self.tables().iter());
-            MaterialError::DielectricNotCovered { eta, sigma, gamma, masking, covered }
+            let dielectrics = self.searched().iter().filter(|table| indices(table).is_some());
+            let nearest = nearest(dielectrics, [sigma, gamma, dense], masking);
+            MaterialError::DielectricNotCovered { eta, sigma, gamma, masking, nearest }
         })
     }
 
@@ -168,7 +169,7 @@ impl Tables {
         entry: &MaterialEntry,
         read: impl Fn(&Table, &MaterialPoint) -> Option<T>,
         serves: impl Fn(&Reflectance) -> bool,
-    ) -> Result<T, MaterialError> {
+    ) -> Result<T, BindError> {
         let point = MaterialPoint {
             sigma: entry.lobe.round_sigma(),
             gamma: entry.lobe.gamma(),
@@ -181,12 +182,12 @@ impl Tables {
                 && table.subject.reflectance.as_ref().is_some_and(&serves);
             serves.then(|| read(table, &point)).flatten()
         });
-        found.ok_or_else(|| MaterialError::NoAlbedo(entry.name.clone()))
+        found.ok_or_else(|| BindError::NoAlbedoOf(entry.name.clone()))
     }
 
     fn albedos(&self, kind: Kind, masking: Masking) -> impl Iterator<Item = &Table> {
         let of = move |table: &&Table| table.kind == kind && table.subject.masking == Some(masking);
-        self.tables().iter().filter(of)
+        self.searched().iter().filter(of)
     }
 
     fn of_family(&self, kind: Kind, masking: Masking) -> impl Iterator<Item = &Table> {
@@ -238,7 +239,10 @@ fn not_covered<'a, I: Iterator<Item = &'a Table>>(
     });
     match whole.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]) {
         Some(range) => MaterialError::SigmaNotCovered { sigma, range },
-        None => MaterialError::AlbedoNotCovered { sigma, gamma, covered: domains(tables(masking)) },
+        None => {
+            let nearest = nearest(tables(masking), [sigma, gamma, f64::NAN], masking);
+            MaterialError::AlbedoNotCovered { sigma, gamma, nearest }
+        }
     }
 }
 
@@ -249,46 +253,37 @@ fn smallest_sigma(table: &Table) -> Option<f64> {
     axis.quantity(axis.nodes[0])
 }
 
-fn domains<'a>(tables: impl Iterator<Item = &'a Table>) -> String {
-    listed(tables.map(material))
-}
-
-fn dielectrics<'a>(tables: impl Iterator<Item = &'a Table>) -> String {
-    let one = |table: &Table| {
-        let indices = Range(table.subject.reflectance?.indices()?.into());
-        let masking = table.subject.masking?;
-        Some(format!("index {indices} with {} and {masking} masking", material(table)))
+/// What the table covers whose material comes nearest to one of σ, γ and η.
+fn nearest<'a>(
+    tables: impl Iterator<Item = &'a Table>,
+    [sigma, gamma, eta]: [f64; 3],
+    masking: Masking,
+) -> Option<Covered> {
+    // In ratios; those of s for shapes. A missing index counts as none.
+    let beyond = |x: f64, [low, high]: [f64; 2]| {
+        let excess = (low.max(f64::MIN_POSITIVE) / x).max(x / high);
+        if excess > 1.0 { libm::log(excess) } else { 0.0 }
     };
-    listed(tables.filter_map(one))
-}
-
-fn material(table: &Table) -> String {
-    let lobe = &table.subject.lobe;
-    let gamma = Range(lobe.gamma.into());
-    let sigma = lobe.roughness.x();
-    let sigma = match smallest_sigma(table) {
-        Some(first) if sigma.min == 0.0 => format!("0 or {}", Range([first, sigma.max])),
-        _ => Range(sigma.into()).to_string(),
+    let distance = |covered: &Covered| {
+        let [low, high] = covered.gamma.map(s_of_gamma);
+        beyond(s_of_gamma(gamma) + 1.0, [high + 1.0, low + 1.0])
+            + beyond(sigma, covered.sigma)
+            + covered.eta.map_or(0.0, |range| beyond(eta, range))
+            + if covered.masking == masking { 0.0 } else { 1.0 }
     };
-    format!("gamma {gamma} with sigma {sigma}")
+    let all = tables.filter_map(|table| {
+        let sigma: [f64; 2] = table.subject.lobe.roughness.x().into();
+        let sigma = match smallest_sigma(table) {
+            Some(first) if sigma[0] == 0.0 => [first, sigma[1]],
+            _ => sigma,
+        };
+        let gamma = table.subject.lobe.gamma.into();
+        Some(Covered { gamma, sigma, eta: indices(table), masking: table.subject.masking? })
+    });
+    all.min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }
 
-/// Joins texts without duplicates, and at most eight of them.
-fn listed(all: impl Iterator<Item = String>) -> String {
-    const SHOWN: usize = 8;
-    let mut kept: Vec<String> = Vec::new();
-    for one in all {
-        if !kept.contains(&one) {
-            kept.push(one);
-        }
-    }
-    if kept.is_empty() {
-        return "none".into();
-    }
-    if kept.len() > SHOWN {
-        let more = kept.len() - SHOWN;
-        kept.truncate(SHOWN);
-        kept.push(format!("{more} more"));
-    }
-    kept.join("; ")
+/// The indices of refraction of a table of dielectrics.
+fn indices(table: &Table) -> Option<[f64; 2]> {
+    Some(table.subject.reflectance?.indices()?.into())
 }

@@ -40,7 +40,7 @@ impl Tables {
         stand_in: StandIn,
     ) -> Result<Albedo, BindError> {
         let key = lobe.key();
-        let own = self.tables().iter().find(|table| {
+        let own = self.searched().iter().find(|table| {
             table.kind == Kind::Albedo
                 && table.subject.masking == Some(masking)
                 && table.subject.reflectance == Some(Reflectance::Mirror)

@@ -18,6 +18,7 @@ use crate::vector::vec3;
 
 /// How a BSDF returns the light that one bounce loses to further ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Compensation {
     /// Single scattering only.
     #[default]

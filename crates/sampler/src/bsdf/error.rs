@@ -5,14 +5,16 @@ use alloc::format;
 use alloc::string::String;
 use core::fmt;
 
-use microfacet_core::Masking;
+use microfacet_core::{Masking, SkewError};
 use microfacet_tables::Range;
 
 use crate::error::MaterialError;
 use crate::material::LobeKey;
 
-/// Why a BSDF cannot be made: a number outside its domain, or an albedo that the tables lack.
+/// Why a BSDF, or a named material, cannot be made: a number outside its domain, an albedo that the
+/// tables lack, or a name that they do not have.
 #[derive(Clone, PartialEq)]
+#[non_exhaustive]
 pub enum BindError {
     /// An index of refraction η or an extinction k outside its range, or NaN.
     Index {
@@ -47,9 +49,26 @@ pub enum BindError {
         /// Whether the round lobe of √(σx σy) could stand in.
         stand_in: bool,
     },
-    /// The tables' error: a lobe, γ, σ, index or form of masking that they do not cover, or a name
-    /// that they do not have.
+    /// A lobe, γ, σ, index or form of masking that the tables do not cover.
     Material(MaterialError),
+    /// No material of that name in the set; `known` lists those it has.
+    NoSuchMaterial {
+        /// The name asked for.
+        name: String,
+        /// Names in the set.
+        known: String,
+    },
+    /// A named material that has no albedo of its own in this set for the reflectance asked for.
+    NoAlbedoOf(String),
+    /// A named material whose distribution has no albedo of the kind that was asked for.
+    OtherDistribution {
+        /// The material.
+        name: String,
+        /// Its distribution.
+        distribution: String,
+    },
+    /// A table of a material's own distribution is missing from the set.
+    NoTable(String),
     /// A named material whose recipe states no reflectance, so that no BSDF follows from it.
     NoFresnel(String),
 }
@@ -70,11 +89,13 @@ impl fmt::Display for BindError {
                 if let Some(eta) = eta {
                     write!(f, ", of a dielectric of index {eta}")?;
                 }
-                write!(f, " with {masking} masking, which compensation needs; bake it")?;
+                write!(f, " with {masking} masking, which compensation needs")?;
                 if *stand_in {
-                    write!(f, ", or let the round lobe stand in with `StandIn::Round`")?;
+                    write!(f, "; let the round lobe stand in with `StandIn::Round`, or")?;
+                } else {
+                    write!(f, ";")?;
                 }
-                Ok(())
+                write!(f, " bake a set from these lines:\n{}", recipe(lobe, *eta, *masking))
             }
             Self::RoundOnly { stand_in } => {
                 let cure = match stand_in {
@@ -87,6 +108,20 @@ impl fmt::Display for BindError {
                 )
             }
             Self::Material(why) => why.fmt(f),
+            Self::NoSuchMaterial { name, known } => {
+                write!(f, "no material \"{name}\" in this set, which holds {known}")
+            }
+            Self::NoAlbedoOf(name) => {
+                write!(f, "material \"{name}\" has no such albedo in this set")
+            }
+            Self::OtherDistribution { name, distribution } => write!(
+                f,
+                "material \"{name}\" is of the kind {distribution}, which has no dielectric albedo of \
+                 its own; only round Student-t lobes refract"
+            ),
+            Self::NoTable(name) => {
+                write!(f, "table `{name}` is missing from this set; bake it again")
+            }
             Self::NoFresnel(name) => write!(
                 f,
                 "material \"{name}\" states no reflectance; add a line to it in its recipe, such as \
@@ -102,18 +137,30 @@ impl core::error::Error for BindError {}
 
 impl BindError {
     /// The lines of a recipe that add the missing albedo; `None` for other errors.
+    #[must_use]
     pub fn recipe(&self) -> Option<String> {
         let Self::NoAlbedo { lobe, eta, masking, .. } = self else { return None };
-        let fresnel = match eta {
-            Some(eta) => format!("{{ dielectric = {eta} }}"),
-            None => "\"mirror\"".into(),
-        };
-        Some(lobe.recipe(&fresnel, *masking))
+        Some(recipe(lobe, *eta, *masking))
     }
+}
+
+/// The lines of a recipe's material whose bake has the albedo of a lobe.
+fn recipe(lobe: &LobeKey, eta: Option<f64>, masking: Masking) -> String {
+    let fresnel = match eta {
+        Some(eta) => format!("{{ dielectric = {eta} }}"),
+        None => "\"mirror\"".into(),
+    };
+    lobe.recipe(&fresnel, masking)
 }
 
 impl From<MaterialError> for BindError {
     fn from(why: MaterialError) -> Self {
         Self::Material(why)
+    }
+}
+
+impl From<SkewError> for BindError {
+    fn from(why: SkewError) -> Self {
+        Self::Material(why.into())
     }
 }

@@ -112,7 +112,7 @@ impl<const N: usize> BsdfSample<N> {
 ///   in the surface (z = 0) or NaN.
 ///
 /// Values are finite: an f or a density beyond the range of `f32` is `f32::MAX`.
-/// [An example](crate#a-material).
+/// [An example](crate).
 pub trait Bsdf<const N: usize = 3> {
     /// Draws a light for a view, and the density with which it does, as [`pdf`](Self::pdf) returns
     /// it; 0 for a delta event. `choice` chooses among events, `u` the direction.

@@ -4,7 +4,22 @@ use super::distribution::MicrofacetDistribution;
 use crate::error::{BatchError, same_lengths};
 
 /// Functions over whole slices of views, whose vectors are of any type that converts to and from
-/// three `f32`: provided one by one; [`StudentT`](crate::StudentT) computes four at once.
+/// three `f32`. Provided one by one; Student-t lobes compute four at once: G1 in 60 % of the time,
+/// normals in 40 % (`cargo run --profile dist -p microfacet-bench`).
+///
+/// ```
+/// # #[cfg(feature = "embedded")] {
+/// use microfacet_sampler::Tables;
+/// use microfacet_sampler::lobe::Batch;
+///
+/// let lobe = Tables::embedded().student_t(0.3, 4.0)?;
+/// let (v, u) = ([[0.6, 0.0, 0.8]; 64], [[0.3, 0.7]; 64]);
+/// let mut m = [[0.0; 3]; 64];
+/// lobe.sample_batch(&v, &u, &mut m)?;
+/// assert_eq!(m[63], m[0]);
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 pub trait Batch: MicrofacetDistribution {
     /// [`sample_visible_normal`](MicrofacetDistribution::sample_visible_normal) for each view and
     /// pair of numbers, into `m`: the same normals, to 2 ulp.

@@ -1,11 +1,11 @@
 //! The shapes that a set serves: those that every kind of table a lobe needs covers.
 
-use alloc::format;
-use alloc::string::String;
 use alloc::vec::Vec;
 
 use microfacet_core::shape::gamma_of_s;
-use microfacet_tables::{Interpolation, Kind, Range, SAME, Table, Weights};
+use microfacet_tables::{Interpolation, Kind, SAME, Table, Weights};
+
+use crate::error::MaterialError;
 
 /// The kinds of tables that a Student-t lobe reads, one of each list; earlier ones are preferred.
 pub(super) const LOBE: [&[Kind]; 3] = [
@@ -51,15 +51,12 @@ fn common(a: [f64; 2], b: [f64; 2]) -> Option<[f64; 2]> {
     (low <= high * (1.0 + SAME)).then_some([low.min(high), high])
 }
 
-/// The [`shapes`] in words, by γ.
-pub(super) fn in_words(tables: &[Table]) -> String {
-    // The larger s is the smaller γ.
-    let gammas = |[low, high]: [f64; 2]| {
-        let range = Range([gamma_of_s(high), gamma_of_s(low)]);
-        if low == high { format!("gamma = {range}") } else { format!("gamma in {range}") }
-    };
-    let all: Vec<String> = shapes(tables).into_iter().rev().map(gammas).collect();
-    if all.is_empty() { "none".into() } else { all.join(", ") }
+/// The error of a γ that no tables serve.
+pub(super) fn not_covered(tables: &[Table], gamma: f64) -> MaterialError {
+    let ends = || shapes(tables).into_iter().flatten().map(gamma_of_s);
+    let below = ends().filter(|&end| end < gamma).reduce(f64::max);
+    let above = ends().filter(|&end| end > gamma).reduce(f64::min);
+    MaterialError::NotCovered { gamma, nearest: [below, above] }
 }
 
 fn of_kinds<'a>(tables: &'a [Table], kinds: &[Kind]) -> impl Iterator<Item = &'a Table> {

@@ -31,6 +31,17 @@ use crate::vector::vec3;
 /// n = +z. A view above the surface but below the lobe's own horizon (the lobe leans away, and the
 /// view grazes) uses no table: its normals are drawn by rejection, with random numbers derived from
 /// the two given.
+///
+/// ```
+/// # #[cfg(feature = "embedded")] {
+/// use microfacet_sampler::{MicrofacetDistribution, Skew, Tables};
+///
+/// let skew = Skew::new([0.3, 0.1], [0.2, -0.1, 0.5])?; // sigma; turns about x, y, z
+/// let brushed = Tables::embedded().ellipsoid(skew, 2.7)?;
+/// assert!(brushed.g1([0.6, 0.0, 0.8]) <= 1.0);
+/// # }
+/// # Ok::<(), microfacet_sampler::MaterialError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Ellipsoid {
     /// The lobe with σ = 1.

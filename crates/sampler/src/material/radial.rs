@@ -4,8 +4,6 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use glam::Vec3;
-
 use microfacet_core::math::sqrt;
 use microfacet_tables::axis::half_tangent::Slope;
 use microfacet_tables::axis::hermite::{Node, between_rows, hermite, locate, make_monotone};
@@ -20,7 +18,7 @@ use super::roughness::checked;
 use super::slices::{Slice, Slices};
 use super::student_t::StudentT;
 use super::tabulated::Tabulated;
-use crate::error::MaterialError;
+use crate::bsdf::BindError;
 use crate::vector::vec3;
 
 /// A lobe of any isotropic distribution: GTR, Gauss, Schlick or a measured one.
@@ -63,13 +61,13 @@ impl Radial {
         tables: &[Table],
         sigma: f32,
         label: &str,
-    ) -> Result<Self, MaterialError> {
+    ) -> Result<Self, BindError> {
         let [sigma, _] = checked(sigma.into())?;
         let slice = |kind: Kind| {
             let found = tables.iter().find(|table| {
                 table.kind == kind && table.subject.lobe.distribution.as_deref() == Some(label)
             });
-            let missing = || MaterialError::NoTable(format!("{} of {label}", kind.name()));
+            let missing = || BindError::NoTable(format!("{} of {label}", kind.name()));
             found.map(Slice::whole).ok_or_else(missing)
         };
         let (shadowing, slope) = (slice(Kind::RadialShadowing)?, slice(Kind::RadialSlope)?);

@@ -220,7 +220,7 @@ fn find<'a>(
             }
         }
     }
-    Err(MaterialError::NotCovered { gamma, covered: coverage::in_words(tables) })
+    Err(coverage::not_covered(tables, gamma))
 }
 
 /// See [`port::tables_of_shape`](crate::port::tables_of_shape).
