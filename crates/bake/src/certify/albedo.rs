@@ -114,7 +114,9 @@ pub fn certified(
         tables.iter().filter(|table| table.kind == Kind::Albedo).cloned().collect();
     let of_form = |table: &Table| {
         let same = |other: &&Table| other.subject.masking == table.subject.masking;
-        directional.iter().find(same).ok_or_else(|| MaterialError::NoTable(table.name.clone()))
+        directional.iter().find(same).ok_or_else(|| {
+            AlbedoError::Lobe(format!("table `{}` has no directional albedo", table.name))
+        })
     };
     stage.split(directional.len() * climbed_count(spec));
     let certified = |table: Table| {
@@ -387,9 +389,8 @@ fn averages(
     table: &Table,
     directional: &Table,
     references: &[Reference],
-) -> Result<Certificate, MaterialError> {
-    let set = Tables::from_tables(Default::default(), vec![table.clone()])
-        .map_err(|why| MaterialError::NoTable(why.to_string()))?;
+) -> Result<Certificate, AlbedoError> {
+    let set = Tables::from_tables(Default::default(), vec![table.clone()])?;
     let measured = |at: &Reference| average_errors(&set, directional, &at.site);
     let errors = measured_at(references.to_vec(), measured)?;
     let mut certificate = summary(spec, &errors, &[]);

@@ -500,8 +500,8 @@ fn along_error(lobe: &StudentT, shape: &Shape, v: Vec3, u: f32) -> f64 {
 }
 
 /// The in-plane unit slope of a normal sampled with σ = 1 and a view in the plane y = 0.
-fn slope_of(shape: &Shape, m: Vec3) -> SignedSlope {
-    signed(shape, f64::from(m.x) / f64::from(m.z))
+fn slope_of(shape: &Shape, [x, _, z]: [f32; 3]) -> SignedSlope {
+    signed(shape, f64::from(x) / f64::from(z))
 }
 
 fn signed(shape: &Shape, x: f64) -> SignedSlope {
@@ -513,7 +513,7 @@ fn across_error(lobe: &StudentT, shape: &Shape, u: f32) -> f64 {
     let error = |([x, z], u1): ([f32; 2], f32)| {
         let m = lobe.sample_visible_normal(Vec3::new(x, 0.0, z), [u1, u]);
         // t = y/√(z² + s x²) does not depend on u₁.
-        let [x, y, z] = [m.x, m.y, m.z].map(f64::from);
+        let [x, y, z] = m.map(f64::from);
         let t = y / (z * z + shape.s() * x * x).sqrt();
         (across_cdf(shape, signed(shape, t)) - f64::from(u)).abs()
     };

@@ -4,7 +4,7 @@
 //! Points are spaced along the tables' own axes, as in [`certificate`](super::certificate): even
 //! steps of θ would nearly all miss a narrow distribution.
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use microfacet_model::classic::{Marginal, MarginalView};
 use microfacet_sampler::{Lobe, MicrofacetDistribution, Tables};
 use microfacet_tables::axis::HalfTangent;
@@ -200,7 +200,7 @@ impl<'a> Ruler<'a> {
 
     /// In-plane slope and slope across of a normal.
     fn slopes(&self, v: Vec3, u: [f32; 2]) -> [f64; 2] {
-        let DVec3 { x, y, z } = self.radial.sample_visible_normal(v, u).as_dvec3();
+        let [x, y, z] = self.radial.sample_visible_normal(v, u).map(f64::from);
         [x, y].map(|slope| slope / (z * self.marginal.sigma()))
     }
 

@@ -144,8 +144,8 @@ mod tests {
                 let v = Vec3::new(r, r * t, z);
                 // In unit space, along the stretched azimuth.
                 let tilt = |u: f32| {
-                    let m = lobe.sample_visible_normal(v, [u, 0.5]);
-                    (m.x * v.x + m.y * v.y) / m.z
+                    let [x, y, z] = lobe.sample_visible_normal(v, [u, 0.5]);
+                    (x * v.x + y * v.y) / z
                 };
                 let last = lobe.tabulated_share(v);
                 // The tabulated part ends with the steepest slope, the heavy part begins with the

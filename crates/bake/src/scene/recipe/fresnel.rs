@@ -1,7 +1,7 @@
 //! The reflectance of a material, and its form of masking.
 
 use microfacet_sampler::Metal;
-use microfacet_sampler::bsdf::UnknownMetal;
+use microfacet_sampler::UnknownMetal;
 
 use super::write::quoted;
 use super::{CONDUCTOR_KEYS, Entry, FRESNEL_KEYS};
