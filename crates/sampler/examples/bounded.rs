@@ -11,7 +11,8 @@ use rand::{RngExt, SeedableRng};
 
 const SAMPLES: u32 = 200_000;
 
-fn weight(material: &StudentT, v: Vec3, m: Vec3) -> f64 {
+fn weight(material: &StudentT, v: Vec3, m: [f32; 3]) -> f64 {
+    let m = Vec3::from(m);
     let l = 2.0 * v.dot(m) * m - v;
     f64::from(material.g2(v, l, Masking::HeightCorrelated) / material.g1(v))
 }

@@ -6,8 +6,7 @@ use glam::Vec3;
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
-use microfacet_sampler::bsdf::Event;
-use microfacet_sampler::{Bsdf, BsdfSample, Dielectric, Tables, Transport};
+use microfacet_sampler::{Bsdf, BsdfSample, BsdfSettings, Dielectric, Event, Tables, Transport};
 
 const SAMPLES: usize = 200_000;
 const GAMMAS: [f64; 8] = [1.501, 1.52, 1.55, 1.6, 1.65, 1.7, 1.8, 1.9];
@@ -25,7 +24,8 @@ fn main() {
     for gamma in GAMMAS {
         let lobe = Tables::embedded().student_t(0.3, gamma).expect("a shape of the default set");
         for eta in ETAS {
-            let glass = Dielectric::new(lobe.clone(), eta).expect("an index in the range");
+            let glass = Dielectric::new(lobe.clone(), eta, BsdfSettings::new())
+                .expect("an index in the range");
             let glass = glass.with_channels::<1>();
             let rows = THETAS.map(|theta| row(&glass, theta.to_radians()));
             let [one, ten] = [1, 2].map(|i| rows.iter().map(|row| row[i]).fold(0.0, f64::max));
@@ -43,8 +43,8 @@ fn row<B: Bsdf<1>>(glass: &B, theta: f32) -> [f64; 3] {
     let (mut light, mut counts) = ([0.0; 2], [0; 3]);
     for _ in 0..SAMPLES {
         let u = [random.random(), random.random()];
-        let Some(BsdfSample { l, weight, pdf, event: Event::Transmission, delta, .. }) =
-            glass.sample(v, random.random(), u, Transport::Importance)
+        let Some((BsdfSample { l, weight, event: Event::Transmission, delta, .. }, pdf)) =
+            glass.sample_with_pdf(v, random.random(), u, Transport::Importance)
         else {
             continue;
         };

@@ -81,9 +81,10 @@ pub enum MaterialError {
 pub struct Covered {
     /// Shapes.
     pub gamma: [f64; 2],
-    /// Roughnesses; the table also holds σ = 0, a mirror, where they begin at the smallest that a
-    /// lobe has.
+    /// Roughnesses.
     pub sigma: [f64; 2],
+    /// Whether σ = 0, a mirror, is among them.
+    pub mirror: bool,
     /// Indices of refraction, of a table of dielectrics.
     pub eta: Option<[f64; 2]>,
     /// The form of masking.
@@ -92,11 +93,12 @@ pub struct Covered {
 
 impl fmt::Display for Covered {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { gamma, sigma, eta, masking } = self;
+        let Self { gamma, sigma, mirror, eta, masking } = self;
         if let Some(eta) = eta {
             write!(f, "index {} with ", Range(*eta))?;
         }
-        write!(f, "gamma {} with sigma {}", Range(*gamma), Range(*sigma))?;
+        let zero = if *mirror { "0 or " } else { "" };
+        write!(f, "gamma {} with sigma {zero}{}", Range(*gamma), Range(*sigma))?;
         if eta.is_some() { write!(f, " and {masking} masking") } else { Ok(()) }
     }
 }
@@ -109,6 +111,24 @@ impl fmt::Display for Nearest<'_> {
         match self.0 {
             Some(covered) => write!(f, "; the nearest that it holds is {covered}"),
             None => write!(f, "; it holds none"),
+        }
+    }
+}
+
+/// The nearest shapes that a set serves, in a sentence.
+struct Served<'a>(&'a [Option<f64>; 2]);
+
+impl fmt::Display for Served<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let at = |gamma: f64| Range([gamma; 2]);
+        match *self.0 {
+            [Some(low), Some(high)] => {
+                write!(f, "the nearest that this set serves are {} and {}", at(low), at(high))
+            }
+            [Some(one), None] | [None, Some(one)] => {
+                write!(f, "the nearest that this set serves is {}", at(one))
+            }
+            [None, None] => write!(f, "this set serves none"),
         }
     }
 }
@@ -126,24 +146,17 @@ impl fmt::Display for MaterialError {
                 "gamma = {x}: the shape must lie in (1.5, inf]; 2 is GGX, inf is Beckmann"
             ),
             Self::Skew(why) => why.fmt(f),
-            Self::NotCovered { gamma, .. } if *gamma < GAMMA_MIN => write!(
+            Self::NotCovered { gamma, nearest } if *gamma < GAMMA_MIN => write!(
                 f,
                 "gamma = {gamma} is not covered by any tables, which begin at {GAMMA_MIN}: below, almost every visible normal \
-                 lies within rounding of the horizon; take gamma = {GAMMA_MIN} or more"
+                 lies within rounding of the horizon; {}; take gamma = {GAMMA_MIN} or more",
+                Served(nearest)
             ),
-            Self::NotCovered { gamma, nearest } => {
-                write!(f, "gamma = {gamma} is not covered by the tables of this set")?;
-                let at = |gamma: &f64| Range([*gamma; 2]);
-                match nearest {
-                    [Some(low), Some(high)] => {
-                        write!(f, "; the nearest that it serves are {} and {}", at(low), at(high))
-                    }
-                    [Some(one), None] | [None, Some(one)] => {
-                        write!(f, "; the nearest that it serves is {}", at(one))
-                    }
-                    [None, None] => write!(f, ", which serve no shape"),
-                }
-            }
+            Self::NotCovered { gamma, nearest } => write!(
+                f,
+                "gamma = {gamma} is not covered by the tables of this set; {}",
+                Served(nearest)
+            ),
             Self::MaskingNotCovered { masking, other: Some(other) } => {
                 write!(f, "this set has no albedo tables for {masking} masking, only for {other}")
             }

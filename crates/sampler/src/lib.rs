@@ -21,7 +21,7 @@
 //! fn main() -> Result<(), microfacet_sampler::BindError> {
 //!     let tables = Tables::embedded(); // 1.7 MB, compiled in; or Tables::from_bytes(&file)
 //!     let settings = BsdfSettings::new().compensated(Compensation::KullaConty, &tables);
-//!     let gold = Conductor::new(tables.student_t([0.3, 0.1], 2.5)?, Metal::Gold, settings)?;
+//!     let gold = Conductor::new(tables.student_t(0.3, 2.5)?, Metal::Gold, settings)?;
 //!
 //!     let (v, l) = ([0.6, 0.0, 0.8], [0.0, 0.0, 1.0]);
 //!     let (f, pdf) = gold.eval_pdf(v, l, Transport::Radiance); // f without the cosine

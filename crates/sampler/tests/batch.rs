@@ -4,7 +4,7 @@ use glam::Vec3;
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
-use microfacet_sampler::lobe::BatchError;
+use microfacet_sampler::lobe::{Batch, BatchError};
 use microfacet_sampler::{MicrofacetDistribution, StudentT, Tables};
 
 /// Views of the whole hemisphere and a little below it, the axes, and vectors that are not
@@ -52,7 +52,7 @@ fn a_batch_of_normals_is_those_normals() {
             let mut m = vec![Vec3::ZERO; count];
             material.sample_batch(&v, &u, &mut m).unwrap();
             for i in 0..count {
-                let one = material.sample_visible_normal(v[i], u[i]);
+                let one = Vec3::from(material.sample_visible_normal(v[i], u[i]));
                 let same = one.is_nan() && m[i].is_nan();
                 // 2 ulp of their unit length.
                 assert!(

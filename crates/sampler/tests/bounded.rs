@@ -1,6 +1,7 @@
 //! Normals bounded for reflection: nothing that reflects upwards is lost, and estimates agree.
 
 use glam::Vec3;
+use microfacet_sampler::lobe::Tabulated;
 use microfacet_sampler::{Masking, MicrofacetDistribution, StudentT, Tables};
 
 fn materials() -> impl Iterator<Item = StudentT> {
@@ -19,12 +20,13 @@ fn views() -> impl Iterator<Item = Vec3> {
     })
 }
 
-fn reflect(v: Vec3, m: Vec3) -> Vec3 {
+fn reflect(v: Vec3, m: [f32; 3]) -> Vec3 {
+    let m = Vec3::from(m);
     2.0 * v.dot(m) * m - v
 }
 
 /// White-furnace weight of a reflection.
-fn weight(material: &StudentT, v: Vec3, m: Vec3) -> f64 {
+fn weight(material: &StudentT, v: Vec3, m: [f32; 3]) -> f64 {
     let l = reflect(v, m);
     if l.z > 0.0 {
         f64::from(material.g2(v, l, Masking::HeightCorrelated) / material.g1(v))
@@ -78,13 +80,13 @@ fn nothing_that_reflects_upwards_is_lost() {
             let bounded = lobe.at(v);
             // The ends of the interval are its first and last normal: upward reflections lie
             // between them.
-            let tilt = |m: Vec3| {
+            let tilt = |[x, y, z]: [f32; 3]| {
                 // In unit space, along the stretched azimuth.
                 let [sx, sy] = material.sigma();
                 let (ax, ay) = (sx * v.x, sy * v.y);
                 let rho = ax.hypot(ay);
                 let (ax, ay) = if rho > 0.0 { (ax / rho, ay / rho) } else { (1.0, 0.0) };
-                (m.x / sx * ax + m.y / sy * ay) / m.z
+                (x / sx * ax + y / sy * ay) / z
             };
             let [first, last] = [0.0, 1.0].map(|u| tilt(bounded.sample([u, 0.5])));
             for u in grid(100) {

@@ -4,6 +4,7 @@ use glam::{DVec3, Vec3};
 use microfacet_model as model;
 use microfacet_model::MicrofacetDistribution as _;
 use microfacet_model::statistics::{sidak, test_visible_normals};
+use microfacet_sampler::lobe::Tabulated;
 use microfacet_sampler::{Ggx, Lobe, MaterialError, MicrofacetDistribution, Tables};
 use microfacet_tables::{Interval, LobeSpec, MaterialEntry, Provenance, Roughness};
 
@@ -24,7 +25,7 @@ fn values_are_those_of_the_model() {
             let v = direction(view).as_vec3();
             let exact = truth.g1(v.as_dvec3());
             assert!((f64::from(ggx.g1(v)) - exact).abs() < 3e-7, "{sigma:?} {view:?}");
-            let m = ggx.sample_visible_normal(v, [0.4, 0.8]);
+            let m = Vec3::from(ggx.sample_visible_normal(v, [0.4, 0.8]));
             let density = truth.visible_normal_pdf(v.as_dvec3(), m.as_dvec3());
             // Relative error, and what the rounding of v·m allows.
             let error = (f64::from(ggx.visible_normal_pdf(v, m)) - density).abs() / density;
@@ -47,7 +48,9 @@ fn normals_have_the_analytic_distribution() {
         let [x, y] = ggx.alpha().map(f64::from);
         let truth = model::StudentT::new([x, y], gamma).unwrap();
         let v = direction(view).as_vec3();
-        test_visible_normals(&truth, v.as_dvec3(), SAMPLES, 11, |u| ggx.sample_visible_normal(v, u))
+        test_visible_normals(&truth, v.as_dvec3(), SAMPLES, 11, |u| {
+            ggx.sample_visible_normal(v, u).into()
+        })
     };
     for (sigma, view) in cases {
         let outcome = judge(sigma, view, 2.0);
@@ -67,7 +70,7 @@ fn normals_are_visible_at_every_corner() {
             directions.into_iter().chain([Vec3::X, Vec3::Z, -Vec3::Z, Vec3::new(0.6, 0.0, -0.8)])
         {
             for u in corners.into_iter().flat_map(|a| corners.map(|b| [a, b])) {
-                let m = ggx.sample_visible_normal(v, u);
+                let m = Vec3::from(ggx.sample_visible_normal(v, u));
                 assert!((m.length() - 1.0).abs() < 1e-6 && m.z > 0.0, "{sigma:?} {v} {u:?}: {m}");
                 let above = Vec3::new(v.x, v.y, v.z.max(0.0));
                 assert!(above.dot(m) > -1.2e-7, "{sigma:?} {v} {u:?}: {m} faces away");
@@ -113,6 +116,7 @@ fn a_set_without_tables_has_ggx_and_nothing_else() {
 fn tables_are_preferred_where_there_are_some() {
     let embedded = Tables::embedded();
     assert!(embedded.student_t(0.3, 2.0).unwrap().bytes() > 0);
-    let both = without_tables().or_embedded();
+    let both = without_tables().with_fallback(&embedded);
     assert!(both.material("gold").unwrap().bytes() > 0 && both.student_t(0.3, 3.0).is_ok());
+    assert!(both.tables().is_empty(), "what is written remains the set itself");
 }

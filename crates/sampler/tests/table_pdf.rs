@@ -2,7 +2,8 @@
 //! that leaves no bias.
 
 use glam::{DVec3, Vec3};
-use microfacet_sampler::{MicrofacetDistribution, Skew, Tables};
+use microfacet_sampler::lobe::Tabulated;
+use microfacet_sampler::{Skew, Tables};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
@@ -16,8 +17,8 @@ fn direction(random: &mut StdRng) -> Vec3 {
 }
 
 /// The analytic density of a drawn normal over the table's.
-fn ratio(lobe: &impl MicrofacetDistribution, v: Vec3, u: [f32; 2], what: &str) -> f64 {
-    let m = lobe.sample_visible_normal(v, u);
+fn ratio(lobe: &impl Tabulated, v: Vec3, u: [f32; 2], what: &str) -> f64 {
+    let m = Vec3::from(lobe.sample_visible_normal(v, u));
     let (pdf, table) = (lobe.visible_normal_pdf(v, m), lobe.table_pdf(v, m));
     let place = || format!("{what}, v {v}, u {u:?}, m {m}: {pdf:e} against {table:e}");
     assert!(table.is_finite() && (table > 0.0 || pdf == 0.0), "{}", place());
@@ -82,7 +83,7 @@ fn dividing_by_it_is_unbiased() {
         let bounded = lobe.clone().bounded();
         let of_bounded = |v: Vec3, u: [f32; 2]| {
             let at = bounded.at(v);
-            let m = at.sample(u);
+            let m = Vec3::from(at.sample(u));
             let table = f64::from(at.table_pdf(m));
             assert!(table > 0.0, "{gamma} {v} {u:?} {m}");
             f64::from(at.visible_normal_pdf(m)) / table

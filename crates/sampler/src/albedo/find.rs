@@ -272,13 +272,11 @@ fn nearest<'a>(
             + if covered.masking == masking { 0.0 } else { 1.0 }
     };
     let all = tables.filter_map(|table| {
-        let sigma: [f64; 2] = table.subject.lobe.roughness.x().into();
-        let sigma = match smallest_sigma(table) {
-            Some(first) if sigma[0] == 0.0 => [first, sigma[1]],
-            _ => sigma,
-        };
+        let [least, largest]: [f64; 2] = table.subject.lobe.roughness.x().into();
+        let first = smallest_sigma(table).filter(|_| least == 0.0);
+        let (mirror, sigma) = (first.is_some(), [first.unwrap_or(least), largest]);
         let gamma = table.subject.lobe.gamma.into();
-        Some(Covered { gamma, sigma, eta: indices(table), masking: table.subject.masking? })
+        Some(Covered { gamma, sigma, mirror, eta: indices(table), masking: table.subject.masking? })
     });
     all.min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }

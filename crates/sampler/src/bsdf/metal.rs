@@ -32,7 +32,7 @@ use microfacet_tables::Reflectance;
 /// };
 /// let red = reflectance((gold.eta()[0], gold.k()[0]));
 /// assert!((red - 0.956).abs() < 1e-3);
-/// # Ok::<(), microfacet_sampler::bsdf::UnknownMetal>(())
+/// # Ok::<(), microfacet_sampler::UnknownMetal>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]

@@ -44,8 +44,8 @@ pub trait Reflecting: MicrofacetDistribution {
     }
 
     /// A light reflected off a visible normal and its weight f·cos θ_l/pdf ∈ [0, 1], from two
-    /// numbers in [0, 1] (clamped to them, NaN to 0). `None` where the light would be below the
-    /// horizon: a path ends there with weight 0.
+    /// numbers in [0, 1] (clamped to them, NaN to 0). `None` where the view is not above the
+    /// horizon or the light would not be: a path ends there with weight 0.
     ///
     /// The density, which many paths never need, is [`eval_pdf`](Self::eval_pdf)'s. A reflectance
     /// is that of the cosine v·m = √(½ (1 + v·l)).
@@ -56,7 +56,11 @@ pub trait Reflecting: MicrofacetDistribution {
         u: [f32; 2],
         masking: Masking,
     ) -> Option<([f32; 3], f32)> {
-        let (l, white) = Facets { lobe: self, masking }.draw::<false>(vec3(v), u)?;
+        let v = vec3(v);
+        if !(v.z > 0.0) {
+            return None;
+        }
+        let (l, white) = Facets { lobe: self, masking }.draw::<false>(v, u)?;
         Some((l.to_array(), white.weight))
     }
 
