@@ -35,8 +35,8 @@ use crate::vector::vec3;
 /// tables where there is a compensation; a white base then returns all light. With a
 /// [`Bounded`](crate::lobe::Bounded) lobe fewer samples are lost.
 ///
-/// Single scattering needs no table: T and R are integrated, to 2e-3 of those that are baked. The
-/// default set has no albedos of rough coats, so that compensation needs a set baked from a recipe
+/// Single scattering needs no table: T and R are integrated when the plastic is made, to 1e-3, and to
+/// 6e-3 for η < 1. The default set has no albedos of rough coats, so that compensation needs a set baked from a recipe
 /// that names the coat, for round lobes of the family; [`StandIn::Round`] uses them for
 /// anisotropic and tilted lobes.
 ///
@@ -77,8 +77,8 @@ pub struct Plastic<L, const N: usize = 3> {
 impl<L: Reflecting + Tabulated, const N: usize> Plastic<L, N> {
     /// Plastic with a coat of a lobe and an index η, inside over outside, over a base of albedo ρ.
     ///
-    /// For single scattering the albedo of a rough coat is integrated here, which takes 50,000
-    /// samples of the lobe, some milliseconds.
+    /// For single scattering the albedo of a rough coat is integrated here, by some 100,000 samples
+    /// of the lobe, which takes some 20 milliseconds.
     ///
     /// # Errors
     /// [`BindError`] for an η outside [1e-3, 1e3], a ρ outside [0, 1], or where a compensation was
