@@ -5,7 +5,8 @@ use core::fmt;
 use microfacet_core::{Masking, SkewError};
 use microfacet_tables::{GAMMA_MIN, Range};
 
-/// Why a set cannot give a lobe or an albedo, in numbers: what was asked for, and what comes nearest.
+/// Why a set cannot give a lobe or an albedo, in numbers: what was asked for, and what comes
+/// nearest.
 #[derive(Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum MaterialError {

@@ -82,10 +82,10 @@
 //!   order of bytes: tests pass on 32-bit `i686` and big-endian `s390x` as well, under Miri.
 //! - `embedded` (default): the default set, [`Tables::embedded`], 1.7 MB of γ ∈ [1.501, ∞].
 //! - No unsafe code. Every type is `Send` and `Sync`; nothing is cached behind a lock.
-//! - The oldest compiler is Rust 1.89; a later one is required by a new minor version only. Versions
-//!   follow semantic versioning: before 1.0 a minor version may break programs, and the changelog
-//!   says how. Other numbers than before, beyond the errors that are stated, count as a break.
-//!   [`port`] may change in any release.
+//! - The oldest compiler is Rust 1.89; a later one is required by a new minor version only.
+//!   Versions follow semantic versioning: before 1.0 a minor version may break programs, and the
+//!   changelog says how. Other numbers than before, beyond the errors that are stated, count as a
+//!   break. [`port`] may change in any release.
 
 #![cfg_attr(not(feature = "std"), no_std)]
 
@@ -113,8 +113,8 @@ pub use microfacet_tables::LoadError;
 pub use tables::DEFAULT_SET;
 pub use tables::Tables;
 
-/// What lobes can do beyond [`MicrofacetDistribution`], arguments and results of their functions, and
-/// the lobes of special materials.
+/// What lobes can do beyond [`MicrofacetDistribution`], arguments and results of their functions,
+/// and the lobes of special materials.
 pub mod lobe {
     pub use crate::error::BatchError;
     pub use crate::material::{

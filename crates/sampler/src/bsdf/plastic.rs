@@ -35,10 +35,10 @@ use crate::vector::vec3;
 /// tables where there is a compensation; a white base then returns all light. With a
 /// [`Bounded`](crate::lobe::Bounded) lobe fewer samples are lost.
 ///
-/// Single scattering needs no table: T and R are integrated when the plastic is made, to 1e-3, and to
-/// 6e-3 for η < 1. The default set has no albedos of rough coats, so that compensation needs a set baked from a recipe
-/// that names the coat, for round lobes of the family; [`StandIn::Round`] uses them for
-/// anisotropic and tilted lobes.
+/// Single scattering needs no table: T and R are integrated when the plastic is made, to 1e-3, and
+/// to 6e-3 for η < 1. The default set has no albedos of rough coats, so that compensation needs a
+/// set baked from a recipe that names the coat, for round lobes of the family; [`StandIn::Round`]
+/// uses them for anisotropic and tilted lobes.
 ///
 /// ```
 /// # #[cfg(feature = "embedded")] {
