@@ -65,7 +65,7 @@ pub(super) fn parts(
     if subjects.shown.is_empty() || subjects.stops.is_empty() {
         return Ok(None);
     }
-    let tables = source.set.clone().or_embedded();
+    let tables = source.set.clone().with_fallback(&Tables::embedded());
     let stage = meter.stage(seconds(source.set));
     stage.split(subjects.shown.len());
     let data = Data::new(&tables, subjects)?;
@@ -275,7 +275,7 @@ fn scripts(data: &Data) -> Markup {
 /// # Errors
 /// [`BindError`] for a shape that neither the set nor the default set covers.
 pub fn picture(set: &Tables, look: &Look, film: Film) -> Result<Vec<[u8; 3]>, BindError> {
-    Ok(Scene::new(&set.clone().or_embedded(), look)?.picture(film))
+    Ok(Scene::new(&set.clone().with_fallback(&Tables::embedded()), look)?.picture(film))
 }
 
 #[cfg(test)]
