@@ -24,7 +24,6 @@ use super::{ReportError, Source};
 use data::{Data, SIGMA, UNSTATED, is_unstated, label, look};
 use scene::Scene;
 pub use scene::{Film, Look, tangent_frame};
-pub use studio::by_cosine;
 pub use tone::srgb;
 
 /// Pictures of lobes, one of which replaces the sphere where there is no WebGL 2. With 96 samples
