@@ -2,6 +2,7 @@
 #[allow(dead_code)]
 fn load(bytes: &[u8]) {
     use microfacet_sampler::MicrofacetDistribution;
+    use microfacet_sampler::lobe::Tabulated;
 
     let mut bytes = bytes.to_vec();
     microfacet_tables::seal(&mut bytes);
