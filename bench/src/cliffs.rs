@@ -7,6 +7,7 @@ use std::cell::RefCell;
 use std::hint::black_box;
 
 use glam::Vec3;
+use microfacet_sampler::lobe::{Batch, Tabulated};
 use microfacet_sampler::{Ggx, MicrofacetDistribution, StudentT, Tables};
 
 use crate::clock::{self, Calls};
@@ -132,7 +133,10 @@ impl Classes {
 
     /// Calls over arrays of components. A renderer's view comes from three registers as well; a
     /// function that is not inlined then finds it in memory in three parts.
-    fn of_components<'a>(&'a self, one: impl Fn(Vec3, [f32; 2]) -> Vec3 + 'a) -> Calls<'a> {
+    fn of_components<'a, M: Into<Vec3>>(
+        &'a self,
+        one: impl Fn(Vec3, [f32; 2]) -> M + 'a,
+    ) -> Calls<'a> {
         let [x, y, z] = &self.components;
         let numbers = &self.random.numbers;
         let mut normals = vec![Vec3::ZERO; numbers.len()];
@@ -141,7 +145,7 @@ impl Classes {
             let normals = &mut normals[at.clone()];
             for ((((x, y), z), u), m) in x.iter().zip(y).zip(z).zip(&numbers[at]).zip(&mut *normals)
             {
-                *m = one(Vec3::new(*x, *y, *z), *u);
+                *m = one(Vec3::new(*x, *y, *z), *u).into();
             }
             black_box(normals);
         })

@@ -5,8 +5,9 @@ use std::hint::black_box;
 
 use glam::Vec3;
 use microfacet_core::schlick::schlick;
+use microfacet_sampler::lobe::{Reflecting, Tabulated};
 use microfacet_sampler::{
-    Bsdf, Conductor, ConductorFresnel, Ggx, Metal, MicrofacetDistribution, Tables, Transport,
+    Bsdf, BsdfSettings, Conductor, ConductorFresnel, Ggx, Metal, Tables, Transport,
 };
 
 use crate::clock::Calls;
@@ -50,13 +51,13 @@ impl Hits {
     /// A conductor of the sampler crate.
     pub(crate) fn of_lobe<'a>(
         &'a self,
-        lobe: impl MicrofacetDistribution + 'a,
+        lobe: impl Reflecting + Tabulated + 'a,
         fresnel: ConductorFresnel,
     ) -> Calls<'a> {
-        let conductor = Conductor::new(lobe, fresnel);
+        let conductor = Conductor::new(lobe, fresnel, BsdfSettings::new()).expect("no tables");
         self.calls(move |v, l, u| {
-            let path = conductor.sample(v, 0.5, u, Transport::Radiance);
-            let path = path.map(|path| (path.l, path.weight, path.pdf));
+            let path = conductor.sample_with_pdf(v, 0.5, u, Transport::Radiance);
+            let path = path.map(|(path, pdf)| (path.l.into(), path.weight, pdf));
             used(path, conductor.eval_pdf(v, l, Transport::Radiance))
         })
     }

@@ -5,7 +5,8 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use microfacet_sampler::{MicrofacetDistribution, Tables};
+use microfacet_sampler::Tables;
+use microfacet_sampler::lobe::Tabulated;
 use microfacet_tables::Kind;
 
 use crate::paper::Approximation;

@@ -3,7 +3,8 @@
 use std::hint::black_box;
 
 use glam::Vec3;
-use microfacet_sampler::{MicrofacetDistribution, StudentT, Tables};
+use microfacet_sampler::lobe::Tabulated;
+use microfacet_sampler::{StudentT, Tables};
 use microfacet_tables::Table;
 
 use crate::clock::Calls;
@@ -44,16 +45,16 @@ pub(crate) type Evaluate<'a> = Box<dyn Fn(&[Vec3], &mut [f32]) + 'a>;
 
 /// One call after the other. Each result is used by itself, so that the compiler neither drops a
 /// call nor vectorises the loop: the calls of a path tracer lie apart.
-pub(crate) fn each<'a>(one: impl Fn(Vec3, [f32; 2]) -> Vec3 + 'a) -> Draw<'a> {
+pub(crate) fn each<'a, M: Into<Vec3>>(one: impl Fn(Vec3, [f32; 2]) -> M + 'a) -> Draw<'a> {
     in_a_loop(move |v, u| black_box(one(v, u)))
 }
 
 /// Calls in a loop over arrays, which the compiler may vectorise: it does that with closed forms
 /// that have no branches, and not with lookups.
-pub(crate) fn in_a_loop<'a>(one: impl Fn(Vec3, [f32; 2]) -> Vec3 + 'a) -> Draw<'a> {
+pub(crate) fn in_a_loop<'a, M: Into<Vec3>>(one: impl Fn(Vec3, [f32; 2]) -> M + 'a) -> Draw<'a> {
     Box::new(move |v, u, m| {
         for ((v, u), m) in v.iter().zip(u).zip(m) {
-            *m = one(*v, *u);
+            *m = one(*v, *u).into();
         }
     })
 }

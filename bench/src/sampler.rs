@@ -6,7 +6,7 @@ use std::hint::black_box;
 use glam::{DVec3, Vec3};
 use microfacet_model as model;
 use microfacet_model::MicrofacetDistribution as _;
-use microfacet_sampler::lobe::Bounded;
+use microfacet_sampler::lobe::{Batch as _, Bounded};
 use microfacet_sampler::{Ggx, MicrofacetDistribution as _};
 
 use crate::inputs::Stream;
@@ -70,11 +70,11 @@ fn with_density<'a>(rival: Rival<Sampler<'a>>, density: Density) -> Rival<Sample
 }
 
 /// A sampler of visible normals from a function for one view.
-fn one<'a>(
+fn one<'a, M: Into<Vec3>>(
     name: &'static str,
     gamma: f64,
     check: Check,
-    one: impl Fn(Vec3, [f32; 2]) -> Vec3 + 'a,
+    one: impl Fn(Vec3, [f32; 2]) -> M + 'a,
 ) -> Rival<Sampler<'a>> {
     visible(name, gamma, check, each(one))
 }

@@ -5,6 +5,7 @@ use glam::Vec3;
 use microfacet_model as model;
 use microfacet_model::MicrofacetDistribution as _;
 use microfacet_sampler::MicrofacetDistribution as _;
+use microfacet_sampler::lobe::Batch as _;
 
 use crate::inputs::Inputs;
 use crate::rival::{Evaluate, Rival, each_value, lobe};

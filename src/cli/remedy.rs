@@ -49,7 +49,15 @@ fn of(error: &Error) -> Option<String> {
     } else {
         return match error.downcast_ref() {
             Some(BindError::Material(why)) => of_material(why),
-            Some(why) => why.recipe().map(|recipe| format!("; add to a recipe:\n{recipe}")),
+            Some(BindError::NoAlbedoOf(_)) => Some(
+                ": state its `fresnel` in its recipe, or bake albedos of all materials (--albedo)"
+                    .into(),
+            ),
+            Some(BindError::NoSuchMaterial { name, .. }) => Some(format!(
+                "; to add it, append to its recipe, with its own roughness and shape, and bake \
+                 again:\n[[material]]\nname = \"{name}\"\nsigma = 0.3\ngamma = 3.0"
+            )),
+            Some(_) => None,
             None => error.downcast_ref().and_then(of_material),
         };
     };
@@ -77,14 +85,6 @@ fn of_material(why: &MaterialError) -> Option<String> {
             "; add `fresnel = {{ dielectric = {eta} }}` and `masking = \"{masking}\"` to a \
              material of the recipe that covers them, and bake it again"
         )),
-        MaterialError::NoAlbedo(_) => Some(
-            ": state its `fresnel` in its recipe, or bake albedos of all materials (--albedo)"
-                .into(),
-        ),
-        MaterialError::NoSuchMaterial { name, .. } => Some(format!(
-            "; to add it, append to its recipe, with its own roughness and shape, and bake again:\n\
-             [[material]]\nname = \"{name}\"\nsigma = 0.3\ngamma = 3.0"
-        )),
         _ => None,
     }
 }
@@ -92,8 +92,7 @@ fn of_material(why: &MaterialError) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use microfacet_baker::distribution::DistributionKind;
-    use microfacet_sampler::bsdf::Metal;
-    use microfacet_sampler::{Compensation, Conductor, StandIn, Tables};
+    use microfacet_sampler::{BsdfSettings, Compensation, Conductor, Metal, Tables};
 
     use super::*;
 
@@ -102,10 +101,10 @@ mod tests {
         let set = Tables::embedded();
         let large = || TooLarge { values: 1, needed: 1 << 30, limit: 1 << 20 };
         let lobe = set.student_t([0.4, 0.1], 3.0).unwrap();
-        let gold: Conductor<_> = Conductor::new(lobe, Metal::Gold);
-        let unbound = gold.compensated(&set, Compensation::Turquin, StandIn::Refused).unwrap_err();
+        let settings = BsdfSettings::new().compensated(Compensation::Turquin, &set);
+        let unbound = Conductor::<_>::new(lobe, Metal::Gold, settings).unwrap_err();
         let uncovered =
-            |gamma| Error::from(MaterialError::NotCovered { gamma, covered: "none".into() });
+            |gamma| Error::from(MaterialError::NotCovered { gamma, nearest: [None; 2] });
         let cases: [(Error, &str); 11] = [
             (large().into(), "(--max-memory)"),
             (BakeError::Memory(large()).into(), "(--max-memory)"),
@@ -113,7 +112,7 @@ mod tests {
             (StoreError::TooLarge("out".into(), "9 bytes of 8".into()).into(), "(--per-set)"),
             (ConvertError::ShapeNeeded(DistributionKind::StudentT).into(), "(--shape)"),
             (MerlError::Dimensions([1, 2, 3]).into(), "--input"),
-            (MaterialError::NoAlbedo("silent".into()).into(), "(--albedo)"),
+            (BindError::NoAlbedoOf("silent".into()).into(), "(--albedo)"),
             (unbound.into(), "\n[[material]]\nname = \"another name\"\nsigma = [0.4, 0.1]\n"),
             (set.material("silver").unwrap_err().into(), "\n[[material]]\nname = \"silver\"\n"),
             (uncovered(3.0), "recipe line `gamma = 3`"),

@@ -51,7 +51,7 @@ pub(super) struct Request {
     /// covered by tables; by default that is left out with a warning.
     #[arg(long, requires = "scene")]
     strict: bool,
-    /// Skip what the sampler crate's default set covers (`Tables::or_embedded`).
+    /// Skip what the sampler crate's default set covers (`Tables::with_fallback`).
     #[arg(long, requires = "scene")]
     embedded: bool,
     /// Most materials of one set; a scene with more becomes numbered sets with an index.

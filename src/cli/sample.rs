@@ -15,6 +15,7 @@ use microfacet_baker::store::replace_with;
 use microfacet_model as model;
 use microfacet_model::MicrofacetDistribution as _;
 use microfacet_sampler::MicrofacetDistribution as _;
+use microfacet_sampler::lobe::Tabulated as _;
 use microfacet_validate::configuration::Configuration;
 
 use super::view::View;
@@ -87,7 +88,7 @@ fn source(args: &Args) -> Result<Draw> {
             let lobe = tables(args.tables.as_deref())?.lobe(args.sigma, gamma)?;
             Ok(Box::new(move |random| {
                 let m = lobe.sample_visible_normal(v, [random.random(), random.random()]);
-                (m, lobe.table_pdf(v, m))
+                (m.into(), lobe.table_pdf(v, m))
             }))
         }
         Method::Exact => {

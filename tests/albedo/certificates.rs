@@ -80,7 +80,7 @@ fn across_error(table: &Table, lobe: &StudentT, shape: &Shape) -> f64 {
     let beside = [(Vec3::Z, 0.0), (Vec3::X, 1.0), (Vec3::new(0.6, 0.0, 0.8), 0.5)];
     let errors = numbers(&table.axes[1]).into_iter().flat_map(|u| {
         beside.map(|(v, u1)| {
-            let m = lobe.sample_visible_normal(v, [u1, u]).as_dvec3();
+            let m = Vec3::from(lobe.sample_visible_normal(v, [u1, u])).as_dvec3();
             let t = m.y / (m.z * m.z + shape.s() * m.x * m.x).sqrt();
             (across_cdf(shape, signed(shape, t)) - f64::from(u)).abs()
         })
@@ -96,7 +96,7 @@ fn along_error(table: &Table, lobe: &StudentT, shape: &Shape) -> f64 {
         let exact =
             VisibleSlope::new(shape, UnitView::from_cotangent(f64::from(v.z) / f64::from(v.x)));
         let errors = numbers.iter().map(|&u| {
-            let m = lobe.sample_visible_normal(v, [u, 0.5]).as_dvec3();
+            let m = Vec3::from(lobe.sample_visible_normal(v, [u, 0.5])).as_dvec3();
             (exact.cdf(signed(shape, m.x / m.z)) - f64::from(u)).abs()
         });
         errors.fold(0.0, f64::max)
@@ -175,7 +175,7 @@ impl<'a> Own<'a> {
     }
 
     fn slopes(&self, v: Vec3, u: [f32; 2]) -> [f64; 2] {
-        let DVec3 { x, y, z } = self.radial.sample_visible_normal(v, u).as_dvec3();
+        let [x, y, z] = self.radial.sample_visible_normal(v, u).map(f64::from);
         [x, y].map(|slope| slope / (z * self.marginal.sigma()))
     }
 

@@ -11,7 +11,7 @@ use microfacet_baker::progress::Stage;
 use microfacet_baker::store;
 use microfacet_baker::table_spec::Quality;
 use microfacet_sampler::albedo::{Albedo, FresnelAlbedo, ViewCurve};
-use microfacet_sampler::{Lobe, Masking, MaterialError, MicrofacetDistribution, Tables};
+use microfacet_sampler::{BindError, Lobe, Masking, MicrofacetDistribution, Tables};
 use microfacet_tables::{LobeSpec, Precision, Quantity, Reflectance, Table, encode};
 use serde_json::json;
 
@@ -214,7 +214,7 @@ fn materials_without_such_a_table_are_named() {
         let why = SET.material_albedo(name).unwrap_err();
         assert!(why.to_string().contains(name) && why.to_string().contains(word), "{why}");
     }
-    assert!(matches!(SET.material_albedo("silent"), Err(MaterialError::NoAlbedo { .. })));
+    assert!(matches!(SET.material_albedo("silent"), Err(BindError::NoAlbedoOf(_))));
     // For a range, the middle of the isotropic stand-in.
     let worn = SET.material_albedo("worn").unwrap();
     let round = SET.albedo((0.25_f64 * 0.1).sqrt(), 2.7, Masking::Uncorrelated).unwrap();

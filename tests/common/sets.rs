@@ -67,7 +67,7 @@ pub(crate) fn mean(
 ) -> f64 {
     let step = |i: usize| (i as f32 + 0.5) / steps as f32;
     let numbers = (0..steps).flat_map(|i| (0..steps).map(move |j| [step(i), step(j)]));
-    let sum: f64 = numbers.map(|u| worth(lobe.sample_visible_normal(v, u))).sum();
+    let sum: f64 = numbers.map(|u| worth(lobe.sample_visible_normal(v, u).into())).sum();
     sum / (steps * steps) as f64
 }
 

@@ -7,10 +7,9 @@ use glam::Vec3;
 use microfacet_baker::progress::Stage;
 use microfacet_baker::table_set::Settings;
 use microfacet_baker::table_spec::Quality;
-use microfacet_sampler::bsdf::Event;
 use microfacet_sampler::{
-    AnyBsdf, BindError, Bsdf, Compensation, Conductor, ConductorFresnel, Dielectric, Lobe, Masking,
-    Plastic, Skew, StandIn, Tables, Transport,
+    AnyBsdf, BindError, Bsdf, BsdfSettings, Compensation, Conductor, ConductorFresnel, Dielectric,
+    Event, Lobe, Masking, Plastic, Skew, StandIn, Tables, Transport,
 };
 use microfacet_tables::Kind;
 use microfacet_validate::bsdf::chi_square::{run, test};
@@ -64,12 +63,16 @@ fn specimen(surface: Surface) -> Specimen {
 
 fn glass() -> (Lobe, Dielectric<Lobe>) {
     let lobe: Lobe = Tables::embedded().student_t(0.4, 3.0).unwrap().into();
-    (lobe.clone(), Dielectric::new(lobe, 1.5).unwrap())
+    (lobe.clone(), Dielectric::new(lobe, 1.5, BsdfSettings::new()).unwrap())
+}
+
+fn mirror(lobe: Lobe, settings: BsdfSettings) -> Conductor<Lobe, 1> {
+    Conductor::new(lobe, ConductorFresnel::mirror(), settings).unwrap()
 }
 
 /// p of a BSDF's samples against a density.
-fn p(bsdf: &impl Bsdf<3>, v: Vec3, density: impl Fn(Vec3) -> f32) -> f64 {
-    let draw = |choice, u| bsdf.sample(v, choice, u, Transport::Radiance).map(|sample| sample.l);
+fn p<const N: usize>(bsdf: &impl Bsdf<N>, v: Vec3, density: impl Fn(Vec3) -> f32) -> f64 {
+    let draw = |choice, u| Some(bsdf.sample(v, choice, u, Transport::Radiance)?.l.into());
     test(v, 200_000, 5, Vec::new(), &[], draw, density).p
 }
 
@@ -86,7 +89,7 @@ fn rough_glass_of_long_tails_has_its_density() {
         let v = one.view();
         let draw = |choice, u| {
             let sample = glass.sample(v, choice, u, Transport::Radiance)?;
-            (deltas || !sample.delta).then_some(sample.l)
+            (deltas || !sample.delta).then_some(sample.l.into())
         };
         test(v, 200_000, 3, one.edges(), &[], draw, |l| Bsdf::<3>::pdf(&glass, v, l)).p
     };
@@ -125,22 +128,21 @@ fn wrong_densities_are_rejected() {
         };
         assert!(p(&glass, v, without) < 1e-10);
         // The probability of the event is missing: reflection has the density of a conductor.
-        let mirror: Conductor<Lobe> = Conductor::new(lobe.clone(), ConductorFresnel::mirror());
+        let mirror = mirror(lobe.clone(), BsdfSettings::new());
         let chosen = |l: Vec3| match v.z * l.z > 0.0 {
-            true => Bsdf::<3>::pdf(&mirror, v.z.signum() * v, v.z.signum() * l),
+            true => mirror.pdf(v.z.signum() * v, v.z.signum() * l),
             false => pdf(v, l),
         };
         assert!(p(&glass, v, chosen) < 1e-10);
         // The relative index is taken for its inverse.
-        let inverse = Dielectric::new(lobe.clone(), 1.0 / 1.5).unwrap();
+        let inverse = Dielectric::new(lobe.clone(), 1.0 / 1.5, BsdfSettings::new()).unwrap();
         assert!(p(&glass, v, |l| Bsdf::<3>::pdf(&inverse, v, l)) < 1e-10);
     }
     // The broad lobe of a compensation is missing, or has a wrong probability.
     let rough: Lobe = Tables::embedded().student_t(1.0, 3.0).unwrap().into();
-    let bare: Conductor<Lobe> = Conductor::new(rough, ConductorFresnel::mirror());
-    let tables = Tables::embedded();
-    let whole =
-        bare.clone().compensated(&tables, Compensation::KullaConty, StandIn::Refused).unwrap();
+    let (bare, tables) = (mirror(rough.clone(), BsdfSettings::new()), Tables::embedded());
+    let whole = BsdfSettings::new().compensated(Compensation::KullaConty, &tables);
+    let whole = mirror(rough, whole);
     assert!(p(&whole, v, |l| whole.pdf(v, l)) > LEVEL / 100.0);
     assert!(p(&whole, v, |l| bare.pdf(v, l)) < 1e-10);
     let other = |l: Vec3| 0.2 * bare.pdf(v, l) + 0.8 * l.z.max(0.0) * std::f32::consts::FRAC_1_PI;
@@ -217,14 +219,16 @@ fn the_lines_of_an_error_make_what_is_missing() {
     let bare = draft(start);
     for gamma in [8.0, f64::INFINITY] {
         let brushed = Tables::embedded().student_t([0.4, 0.1], gamma).unwrap();
-        let gold: Conductor<_, 1> = Conductor::new(brushed, ConductorFresnel::mirror());
         for masking in Masking::ALL {
-            let gold = gold.clone().with_masking(masking);
-            let compensate =
-                |set| gold.clone().compensated(set, Compensation::KullaConty, StandIn::Refused);
-            let lines = lines(&compensate(&bare).unwrap_err());
+            let bind = |set, compensation| {
+                let settings = BsdfSettings::new().with_masking(masking);
+                let settings = settings.compensated(compensation, set);
+                Conductor::<_, 1>::new(brushed.clone(), ConductorFresnel::mirror(), settings)
+            };
+            let lines = lines(&bind(&bare, Compensation::KullaConty).unwrap_err());
             let set = draft(&format!("{start}{lines}"));
-            let whole = compensate(&set).expect(&lines);
+            let whole = bind(&set, Compensation::KullaConty).expect(&lines);
+            let gold = bind(&set, Compensation::None).unwrap();
             // The lobe's own albedo, and not that of a round one.
             let exact = set.material_albedo("another name").unwrap();
             let v = Vec3::new(0.0, 0.8, 0.6);
@@ -234,12 +238,14 @@ fn the_lines_of_an_error_make_what_is_missing() {
     }
 }
 
-/// A rough plastic does not bind to the default set, but to a set of the error's lines.
+/// A rough plastic with compensation does not bind to the default set, but to a set of the error's
+/// lines.
 #[test]
 fn the_lines_of_a_message_make_a_plastic() {
     let bind = |set: &Tables| {
         let coat = Tables::embedded().student_t(0.3, 2.5).unwrap();
-        Plastic::new(coat, 1.5, [0.1, 0.4, 0.2], set, Compensation::None, StandIn::Refused)
+        let settings = BsdfSettings::new().compensated(Compensation::KullaConty, set);
+        Plastic::new(coat, 1.5, [0.1, 0.4, 0.2], settings)
     };
     let lines = lines(&bind(&Tables::embedded()).unwrap_err());
     bind(&draft(&lines)).expect(&lines);
@@ -269,8 +275,7 @@ fn named_materials_have_their_own_albedos() {
     // By parameters: the lobe finds the same table.
     let tilted = Skew::new([0.5, 0.3], [0.2, -0.1, 0.7]).unwrap();
     let tilted = set.ellipsoid(tilted, f64::INFINITY).unwrap();
-    let mirror: Conductor<_, 1> = Conductor::new(tilted, ConductorFresnel::mirror());
-    mirror.compensated(&set, Compensation::KullaConty, StandIn::Refused).unwrap();
+    mirror(tilted.into(), BsdfSettings::new().compensated(Compensation::KullaConty, &set));
 
     let of = |name, form| set.bsdf(name, form, StandIn::Refused).expect(name);
     let AnyBsdf::Conductor(gold) = of("gold", Compensation::Turquin) else { panic!() };

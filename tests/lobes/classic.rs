@@ -72,8 +72,9 @@ fn draws_pass_chi_square() {
             let draws = 10_000;
             let mut counts = [0; BINS * BINS];
             for _ in 0..draws {
-                let m = radial.sample_visible_normal(v, [rng.random(), rng.random()]).as_dvec3();
-                let (x, y) = (m.x / (m.z * marginal.sigma()), m.y / (m.z * marginal.sigma()));
+                let m = radial.sample_visible_normal(v, [rng.random(), rng.random()]);
+                let [x, y, z] = m.map(f64::from);
+                let (x, y) = (x / (z * marginal.sigma()), y / (z * marginal.sigma()));
                 let tail = marginal.across_at(x.abs()).tail(y.abs());
                 let shares = [exact.shares(x).below, if y < 0.0 { tail } else { 1.0 - tail }];
                 let [a, b] = shares.map(|u| ((u * BINS as f64) as usize).min(BINS - 1));
@@ -155,7 +156,7 @@ fn a_recipe_bakes_all_kinds() {
     let v = Vec3::new(0.6, 0.0, 0.8);
     assert!(set.material("gold").unwrap().g1(v) > 0.9);
     for name in ["paint", "steel"] {
-        let m = set.material(name).unwrap().sample_visible_normal(v, [0.4, 0.6]);
+        let m = Vec3::from(set.material(name).unwrap().sample_visible_normal(v, [0.4, 0.6]));
         assert!(m.dot(v) > 0.0 && m.z > 0.0, "{name}: {m}");
         assert!(matches!(set.material(name), Ok(Lobe::Radial(_))));
     }

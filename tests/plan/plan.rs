@@ -6,6 +6,7 @@ use microfacet_baker::plan::{Cost, Options, Plan, Verdict};
 use microfacet_baker::scene::Scene;
 use microfacet_baker::table_set::{BakeError, Baked, Settings, Target, bake_with, costs};
 use microfacet_baker::table_spec::{Quality, general_set};
+use microfacet_sampler::lobe::Tabulated;
 use microfacet_sampler::{DEFAULT_SET as GENERAL, Lobe, Masking, MicrofacetDistribution, Tables};
 use microfacet_tables::{
     Axis, Certificate, Interval, Precision, Provenance, Quantity, Table, decode, encode,

@@ -58,7 +58,7 @@ impl<G: Fn(Vec3) -> f32> Metal<G> {
             let weight = share * (self.g1)(l) / (1.0 + of_lamps / density);
             Vec3::from(self.fresnel.at(v.dot(m))) * radiance * weight
         };
-        let m = self.lobe.sample_visible_normal(v, of_light);
+        let m = Vec3::from(self.lobe.sample_visible_normal(v, of_light));
         let l = 2.0 * v.dot(m) * m - v;
         let mut sum = if l.z > 0.0 { estimate(l, m) } else { Vec3::ZERO };
         for towards in sky.sample(of_lamp) {

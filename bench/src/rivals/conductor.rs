@@ -80,7 +80,7 @@ impl<F: Fn(f32) -> [f32; 3]> GgxConductor<F> {
 #[cfg(test)]
 mod tests {
     use microfacet_core::schlick::schlick;
-    use microfacet_sampler::{Bsdf, Conductor, ConductorFresnel, Ggx, Transport};
+    use microfacet_sampler::{Bsdf, BsdfSettings, Conductor, ConductorFresnel, Ggx, Transport};
 
     use super::*;
     use crate::inputs::Inputs;
@@ -90,7 +90,8 @@ mod tests {
         let (sigma, f0) = (0.5, [0.9, 0.7, 0.3]);
         let rival = GgxConductor::new(sigma, |cos| f0.map(|f0| schlick(f0, 1.0, cos)));
         let fresnel = ConductorFresnel::schlick(f0).unwrap();
-        let ours = Conductor::new(Ggx::new(f64::from(sigma)).unwrap(), fresnel);
+        let ggx = Ggx::new(f64::from(sigma)).unwrap();
+        let ours = Conductor::new(ggx, fresnel, BsdfSettings::new()).unwrap();
         let (inputs, lights) = (Inputs::new(1, 500), Inputs::new(2, 500));
         let close = |a: f32, b: f32| (a - b).abs() <= 2e-5 * b.abs();
         let check = |v: Vec3, l: Vec3| {

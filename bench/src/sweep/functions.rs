@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use glam::Vec3;
 
-use microfacet_sampler::lobe::Bounded;
+use microfacet_sampler::lobe::{Batch, Bounded, Tabulated};
 use microfacet_sampler::{Masking, MicrofacetDistribution};
 
 /// The arguments of one call.
@@ -31,7 +31,7 @@ pub(super) struct Cases {
 impl Cases {
     pub(super) fn new(lobe: &impl MicrofacetDistribution, v: &[Vec3], u: &[[f32; 2]]) -> Self {
         let case = |(&v, &u): (&Vec3, &[f32; 2])| {
-            let m = lobe.sample_visible_normal(v, u);
+            let m = Vec3::from(lobe.sample_visible_normal(v, u));
             Case { v, u, m, l: 2.0 * v.dot(m) * m - v }
         };
         Self {
@@ -70,7 +70,7 @@ fn each<L, R>(
 }
 
 /// The functions of every lobe.
-pub(super) fn common<L: MicrofacetDistribution + 'static>() -> Vec<Function<L>> {
+pub(super) fn common<L: Batch + Tabulated + 'static>() -> Vec<Function<L>> {
     const G2: Masking = Masking::HeightCorrelated;
     vec![
         each("d", true, |lobe: &L, at| lobe.d(at.m)),

@@ -6,12 +6,11 @@
 
 use std::time::Instant;
 
-use glam::Vec3;
 use microfacet_baker::cache::Cache;
 use microfacet_baker::plan::{Options, Plan};
 use microfacet_baker::scene::Scene;
 use microfacet_baker::table_set::{Settings, Target, bake_with};
-use microfacet_sampler::{Bsdf, Compensation, StandIn, Transport};
+use microfacet_sampler::{Bsdf, Compensation, StandIn, Tables, Transport};
 
 /// The renderer's materials, written as a recipe; `microfacet_scene::load` reads scene files
 /// as well.
@@ -46,13 +45,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         start.elapsed().as_secs_f64()
     );
 
-    let tables = baked.set.or_embedded();
-    let v = Vec3::new(0.6, 0.0, 0.8);
+    let tables = baked.set.with_fallback(&Tables::embedded());
+    let v = [0.6, 0.0, 0.8];
     for name in ["brushed gold", "frosted glass"] {
         let bsdf = tables.bsdf(name, Compensation::KullaConty, StandIn::Refused)?;
         let sample = bsdf.sample(v, 0.5, [0.3, 0.7], Transport::Radiance);
         println!("{name}: {sample:?}");
-        let (f, pdf) = bsdf.eval_pdf(v, Vec3::Z, Transport::Radiance);
+        let (f, pdf) = bsdf.eval_pdf(v, [0.0, 0.0, 1.0], Transport::Radiance);
         println!("towards the normal f = {f:?}, density {pdf}");
     }
     Ok(())

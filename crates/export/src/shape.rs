@@ -60,7 +60,10 @@ impl Shape {
             })
         };
         let [a, b] = Masking::ALL.map(&mut albedo);
-        let [a, b] = [a, b].map(|found| found.ok_or_else(|| no_albedo(gamma)));
+        // Missing of a shape outside the default set alone, in a set without albedos.
+        let missing =
+            MaterialError::AlbedoNotCovered { sigma: f64::INFINITY, gamma, nearest: None };
+        let [a, b] = [a, b].map(|found| found.ok_or(missing));
         let provenance = tables.provenance();
         Ok(Self {
             gamma,
@@ -77,9 +80,4 @@ impl Shape {
     pub(super) fn worst_albedo(&self, of: impl Fn(&AlbedoTable) -> Option<f64>) -> Option<f64> {
         self.albedos.iter().filter_map(of).reduce(f64::max)
     }
-}
-
-/// This error needs a shape outside the default set, in a set without albedos.
-fn no_albedo(gamma: f64) -> MaterialError {
-    MaterialError::NoTable(format!("albedos of gamma {gamma} for every sigma"))
 }

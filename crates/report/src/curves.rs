@@ -91,7 +91,7 @@ fn view(degrees: f64) -> Vec3 {
 }
 
 pub(super) fn section(source: &Source, subjects: &Subjects) -> Markup {
-    let set = source.set.clone().or_embedded();
+    let set = source.set.clone().with_fallback(&Tables::embedded());
     let others = others(source.set);
     let room = SHOWN.saturating_sub(subjects.shown.len());
     let left_out = subjects.left_out + others.len().saturating_sub(room);

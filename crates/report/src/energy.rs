@@ -38,7 +38,7 @@ pub(super) fn section(
 ) -> Result<Markup, ReportError> {
     let stage = meter.stage(seconds(source.set));
     stage.split(subjects.shown.len() * VIEWS.len());
-    let set = source.set.clone().or_embedded();
+    let set = source.set.clone().with_fallback(&Tables::embedded());
     let furnaces: Vec<Result<Vec<Furnace>, MaterialError>> = subjects
         .shown
         .par_iter()

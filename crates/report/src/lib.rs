@@ -28,7 +28,7 @@ use microfacet_sampler::{MaterialError, Tables};
 use microfacet_tables::LoadError;
 use microfacet_validate::record::Record;
 
-pub use sphere::{Film, Look, by_cosine, picture, srgb, tangent_frame};
+pub use sphere::{Film, Look, picture, srgb, tangent_frame};
 
 /// What a page is made of.
 #[derive(Clone, Copy, Debug)]

@@ -9,7 +9,8 @@ use std::time::Instant;
 
 use glam::Vec3;
 use microfacet_model::{AlbedoIntegrator, Shape};
-use microfacet_sampler::{Masking, MicrofacetDistribution, Tables};
+use microfacet_sampler::lobe::Reflecting;
+use microfacet_sampler::{Masking, Tables};
 use rand::{RngExt, SeedableRng};
 
 use crate::{Outcome, print_head};
@@ -62,11 +63,9 @@ fn monte_carlo(tables: &Tables, (sigma, gamma, cos): (f64, f64, f64), samples: u
     let mut random = rand::rngs::StdRng::seed_from_u64(1);
     let mut sum = 0.0;
     for _ in 0..samples {
-        let m = material.sample_visible_normal(v, [random.random(), random.random()]);
-        let l = 2.0 * v.dot(m) * m - v;
-        if l.z > 0.0 {
-            sum += f64::from(material.g2(v, l, Masking::HeightCorrelated) / material.g1(v));
-        }
+        let u = [random.random(), random.random()];
+        let light = material.sample_reflected(v, u, Masking::HeightCorrelated);
+        sum += light.map_or(0.0, |(_, weight)| f64::from(weight));
     }
     sum / samples as f64
 }

@@ -91,8 +91,8 @@ fn compare(
         let untilted = tables.student_t(sigma, gamma)?;
         let skewed = tables.ellipsoid(skew, gamma)?;
         let [a, b] = least(
-            || round(inputs, |v, u| untilted.sample_visible_normal(v, u).z),
-            || round(inputs, |v, u| skewed.sample_visible_normal(v, u).z),
+            || round(inputs, |v, u| untilted.sample_visible_normal(v, u)[2]),
+            || round(inputs, |v, u| skewed.sample_visible_normal(v, u)[2]),
         );
         let (of_untilted, of_skewed) = (with_density(&untilted), with_density(&skewed));
         let [c, d] = least(|| round(inputs, &of_untilted), || round(inputs, &of_skewed));

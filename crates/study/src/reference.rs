@@ -108,14 +108,14 @@ impl Row {
 /// The results of a row from tables.
 fn read(tables: &Tables, row: &Row) -> Vec<Option<f32>> {
     let material = tables.student_t(row.sigma, row.gamma).expect("embedded tables cover it");
-    let n = material.sample_visible_normal(row.v, row.u);
+    let [x, y, z] = material.sample_visible_normal(row.v, row.u);
     let directional = [
         material.g1(row.v),
         material.g2(row.v, row.light(), row.masking),
         material.d(row.m),
-        n.x,
-        n.y,
-        n.z,
+        x,
+        y,
+        z,
         material.visible_normal_pdf(row.v, row.m),
     ];
     all(directional, row.round_sigma().map(|sigma| read_albedo(tables, sigma, row)))

@@ -6,7 +6,8 @@ use glam::Vec3;
 
 use microfacet_core::gauss_legendre;
 use microfacet_core::shape::s_of_gamma;
-use microfacet_sampler::{Lobe, MicrofacetDistribution};
+use microfacet_sampler::Lobe;
+use microfacet_sampler::lobe::Tabulated;
 use microfacet_tables::axis::half_tangent::{ends, rate, slope_at};
 
 /// Parts of each interval between joints, since 1/(a cubic's derivative) is not a polynomial.

@@ -170,7 +170,7 @@ fn one(
     let v = configuration.view();
     let normals = test_visible_normals(&truth, v.as_dvec3(), options.samples, seed, |u| {
         count();
-        lobe.sample_visible_normal(v, u)
+        lobe.sample_visible_normal(v, u).into()
     });
     let theta = configuration.theta as f32;
     let in_plane = Vec3::new(theta.sin(), 0.0, theta.cos().max(0.0));

@@ -153,8 +153,8 @@ impl Known {
         Ok(match method {
             Method::Table => {
                 let (lobe, v) = (self.lobe(at)?, v.as_vec3());
-                let m = lobe.sample_visible_normal(v, at.u.map(|u| u as f32));
-                [m.x, m.y, m.z, lobe.visible_normal_pdf(v, m)].map(text).into()
+                let ([x, y, z], pdf) = lobe.sample_with_pdf(v, at.u.map(|u| u as f32));
+                [x, y, z, pdf].map(text).into()
             }
             Method::Exact => {
                 let m = at.exact.sample_visible_normal(v, at.u);

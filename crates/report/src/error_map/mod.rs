@@ -14,7 +14,7 @@ mod span;
 use microfacet_baker::bake::albedo::AlbedoError;
 use microfacet_baker::distribution::DistributionError;
 use microfacet_baker::progress::Stage;
-use microfacet_sampler::{MaterialError, Tables};
+use microfacet_sampler::{BindError, MaterialError, Tables};
 use microfacet_tables::{LoadError, Table};
 
 use layout::Layout;
@@ -68,6 +68,9 @@ pub enum Unmeasured {
     /// The set cannot make the lobe.
     #[error(transparent)]
     Material(#[from] MaterialError),
+    /// The set cannot make the lobe of a material.
+    #[error(transparent)]
+    Named(#[from] BindError),
     /// The tables do not make a set.
     #[error(transparent)]
     Load(#[from] LoadError),

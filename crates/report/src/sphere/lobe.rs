@@ -6,7 +6,8 @@ use std::fmt::Write;
 
 use glam::Vec3;
 use maud::{Markup, html};
-use microfacet_sampler::{Lobe, Masking, MaterialError, MicrofacetDistribution, Tables};
+use microfacet_sampler::lobe::Reflecting;
+use microfacet_sampler::{Lobe, Masking, MaterialError, Tables};
 
 use super::scene::Look;
 
@@ -106,7 +107,7 @@ impl Look {
         degrees: f64,
         lights: usize,
     ) -> Result<[Vec<f64>; 3], MaterialError> {
-        let lobes = self.beside(&set.clone().or_embedded())?;
+        let lobes = self.beside(&set.clone().with_fallback(&Tables::embedded()))?;
         Ok(lobes.map(|lobe| values(&lobe, degrees.to_radians(), lights)))
     }
 }
@@ -143,11 +144,8 @@ fn values(lobe: &Lobe, view: f64, lights: usize) -> Vec<f64> {
     let v = at(-view);
     let of = |i: usize| {
         let l = at(angle(i, lights));
-        if !(l.z > 1e-6) {
-            return 0.0;
-        }
-        let white = lobe.d((v + l).normalize()) * lobe.g2(v, l, Masking::HeightCorrelated);
-        f64::from(white / (4.0 * v.z))
+        let (f, _) = lobe.eval_pdf(v, l, Masking::HeightCorrelated);
+        f64::from(f * l.z)
     };
     (0..lights).map(of).collect()
 }

@@ -24,7 +24,6 @@ use super::{ReportError, Source};
 use data::{Data, SIGMA, UNSTATED, is_unstated, label, look};
 use scene::Scene;
 pub use scene::{Film, Look, tangent_frame};
-pub use studio::by_cosine;
 pub use tone::srgb;
 
 /// Pictures of lobes, one of which replaces the sphere where there is no WebGL 2. With 96 samples
@@ -65,7 +64,7 @@ pub(super) fn parts(
     if subjects.shown.is_empty() || subjects.stops.is_empty() {
         return Ok(None);
     }
-    let tables = source.set.clone().or_embedded();
+    let tables = source.set.clone().with_fallback(&Tables::embedded());
     let stage = meter.stage(seconds(source.set));
     stage.split(subjects.shown.len());
     let data = Data::new(&tables, subjects)?;
@@ -275,7 +274,7 @@ fn scripts(data: &Data) -> Markup {
 /// # Errors
 /// [`BindError`] for a shape that neither the set nor the default set covers.
 pub fn picture(set: &Tables, look: &Look, film: Film) -> Result<Vec<[u8; 3]>, BindError> {
-    Ok(Scene::new(&set.clone().or_embedded(), look)?.picture(film))
+    Ok(Scene::new(&set.clone().with_fallback(&Tables::embedded()), look)?.picture(film))
 }
 
 #[cfg(test)]

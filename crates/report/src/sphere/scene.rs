@@ -2,8 +2,9 @@
 //! numbers and estimators are those of `sphere.frag`.
 
 use glam::{Mat3, Vec3};
+use microfacet_sampler::lobe::Reflecting;
 use microfacet_sampler::{
-    BindError, Bsdf, Compensation, Conductor, ConductorFresnel, Lobe, MicrofacetDistribution,
+    BindError, Bsdf, BsdfSettings, Compensation, Conductor, ConductorFresnel, Lobe, Masking,
     StandIn, Tables, Transport,
 };
 use rayon::prelude::*;
@@ -56,8 +57,9 @@ impl Scene {
         let lobe = tables.lobe(look.sigma, look.gamma)?;
         let compensation =
             if look.compensated { Compensation::KullaConty } else { Compensation::None };
-        let bsdf =
-            Conductor::new(lobe, look.fresnel).compensated(tables, compensation, StandIn::Round)?;
+        let settings =
+            BsdfSettings::new().compensated(compensation, tables).with_stand_in(StandIn::Round);
+        let bsdf = Conductor::new(lobe, look.fresnel, settings)?;
         let drawn = tables.lobe(look.sigma, look.drawn)?;
         Ok(Self { studio: Studio::new(), bsdf, drawn, compensated: look.compensated })
     }
@@ -88,8 +90,8 @@ impl Scene {
         let frame = tangent_frame(n);
         let to_tangent = frame.transpose();
         let v = to_tangent * -d;
-        let m = self.drawn.sample_visible_normal(v, [u[2], u[3]]);
-        let mut lights = vec![2.0 * v.dot(m) * m - v];
+        let drawn = self.drawn.sample_reflected(v, [u[2], u[3]], Masking::HeightCorrelated);
+        let mut lights = Vec::from_iter(drawn.map(|(l, _)| Vec3::from(l)));
         lights.extend(self.studio.sample([u[4], u[5]]).map(|towards| to_tangent * towards));
         if self.compensated {
             lights.push(by_cosine([u[6], u[7]]));
@@ -99,19 +101,14 @@ impl Scene {
 
     /// The contribution of a light, however it was drawn: f cos L over the sum of all densities.
     fn share(&self, n: Vec3, frame: &Mat3, v: Vec3, l: Vec3) -> Vec3 {
-        let m = (v + l).normalize_or_zero();
-        let facing = v.dot(m);
-        if !(v.z > 0.0 && l.z > 0.0 && facing > 0.0) {
-            return Vec3::ZERO;
-        }
         let towards = *frame * l;
-        let mut pdf = self.drawn.visible_normal_pdf(v, m) / (4.0 * facing);
-        pdf += self.studio.pdf(towards);
+        let (_, drawn) = self.drawn.eval_pdf(v, l, Masking::HeightCorrelated);
+        let mut pdf = drawn + self.studio.pdf(towards);
         if self.compensated {
             pdf += cosine_pdf(l);
         }
-        let (f, _) = self.bsdf.eval_pdf(v, l, Transport::Radiance);
-        if !(pdf > 0.0) {
+        let f = self.bsdf.eval(v, l, Transport::Radiance);
+        if !(v.z > 0.0 && l.z > 0.0 && pdf > 0.0) {
             return Vec3::ZERO;
         }
         Vec3::from(f) * (l.z / pdf) * self.studio.radiance(n, towards, true)

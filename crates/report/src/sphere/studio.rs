@@ -159,7 +159,7 @@ impl Studio {
 }
 
 /// A direction about z with a density proportional to the cosine, from two numbers in [0, 1).
-pub fn by_cosine([a, b]: [f32; 2]) -> Vec3 {
+pub(super) fn by_cosine([a, b]: [f32; 2]) -> Vec3 {
     let (sin, cos) = (2.0 * PI * b).sin_cos();
     let (r, z) = (a.sqrt(), (1.0 - a).sqrt());
     Vec3::new(r * cos, r * sin, z)

@@ -12,12 +12,12 @@ use microfacet_baker::table_set::{Settings, Target, bake_with};
 use microfacet_baker::table_spec::Quality;
 use microfacet_report::plot::{Content, Sheet, Tile};
 use microfacet_sampler::{
-    AnyBsdf, BindError, Compensation, Conductor, ConductorFresnel, Dielectric, Masking, Metal,
-    Plastic, StandIn, Tables,
+    AnyBsdf, BindError, BsdfSettings, Compensation, Conductor, ConductorFresnel, Dielectric,
+    Masking, Metal, Plastic, Tables,
 };
 use microfacet_tables::Precision;
 
-use crate::spheres::scene::{Floor, Scene};
+use crate::spheres::scene::{COLOURED, Floor, GREY, Scene};
 use crate::spheres::sky::Sky;
 
 /// A figure of Ribardière et al. 2017 (doi:10.1111/cgf.13137).
@@ -95,9 +95,11 @@ fn label(gamma: f64) -> String {
     format!("γ = {gamma}")
 }
 
-fn studio(material: impl Into<AnyBsdf>, floor: Floor) -> (Scene, String) {
-    let scene = Scene { material: material.into(), floor: Some(floor), sky: Sky::studio() };
-    (scene, String::new())
+type Sphere = Result<(Scene, String), BindError>;
+
+fn studio(material: impl Into<AnyBsdf>, floor: [[f32; 3]; 2]) -> Sphere {
+    let floor = Some(Floor::new(floor)?);
+    Ok((Scene { material: material.into(), floor, sky: Sky::studio() }, String::new()))
 }
 
 /// The embedded tables, and what they lack: albedos of dielectrics and of lobes that are not round.
@@ -106,15 +108,16 @@ fn tables(meter: &Meter) -> Result<Tables, Box<dyn Error>> {
     let mut recipe = String::new();
     let [x, y] = BRUSHED;
     for (i, gamma) in SHAPES.into_iter().enumerate() {
-        for eta in [COAT, DIAMOND] {
+        // The albedo of a lobe that is not compensated is not needed.
+        let is_compensated = i < COMPENSATED;
+        for eta in [COAT, DIAMOND].into_iter().filter(|_| is_compensated) {
             write!(
                 recipe,
                 "[[material]]\nname = \"η {eta} γ {gamma}\"\nsigma = {SIGMA}\ngamma = {gamma:?}\n\
                  fresnel = {{ dielectric = {eta} }}\n"
             )?;
         }
-        // The albedo of a lobe that is not compensated is not needed.
-        let fresnel = if i < COMPENSATED { "fresnel = \"mirror\"\n" } else { "" };
+        let fresnel = if is_compensated { "fresnel = \"mirror\"\n" } else { "" };
         for tilt in [0.0, TILT] {
             let theta =
                 if tilt > 0.0 { format!("theta = [{tilt}, 0, 0]\n") } else { String::new() };
@@ -130,7 +133,7 @@ fn tables(meter: &Meter) -> Result<Tables, Box<dyn Error>> {
     let settings =
         Settings { cache: Cache::user(), progress: meter.clone(), ..Settings::default() };
     let target = Target::Quality(Quality::Draft, Precision::F32);
-    Ok(bake_with(&plan, target, settings)?.set.or_embedded())
+    Ok(bake_with(&plan, target, settings)?.set.with_fallback(&Tables::embedded()))
 }
 
 fn brushed(tilt: f64, gamma: f64) -> String {
@@ -140,30 +143,29 @@ fn brushed(tilt: f64, gamma: f64) -> String {
 fn row<T: Copy>(
     name: String,
     columns: &[T],
-    sphere: impl Fn(T) -> Result<(Scene, String), BindError>,
+    sphere: impl Fn(T) -> Sphere,
 ) -> Result<Row, BindError> {
     Ok((name, columns.iter().map(|&column| sphere(column)).collect::<Result<_, _>>()?))
 }
 
 fn materials(tables: &Tables) -> Result<Spheres, BindError> {
-    let exact = StandIn::Refused;
+    let settings = |compensation| BsdfSettings::new().compensated(compensation, tables);
     let gold = |(gamma, compensation)| {
-        let gold = Conductor::new(tables.lobe(SIGMA, gamma)?, Metal::Gold);
-        Ok(studio(gold.compensated(tables, compensation, exact)?, Floor::GREY))
+        let lobe = tables.lobe(SIGMA, gamma)?;
+        studio(Conductor::new(lobe, Metal::Gold, settings(compensation))?, GREY)
     };
     let plastic = |(gamma, compensation)| {
         let coat = tables.lobe(SIGMA, gamma)?;
-        Ok(studio(Plastic::new(coat, COAT, RED, tables, compensation, exact)?, Floor::GREY))
+        studio(Plastic::new(coat, COAT, RED, settings(compensation))?, GREY)
     };
     let diamond = |(gamma, compensation)| {
-        let diamond = Dielectric::new(tables.lobe(SIGMA, gamma)?, DIAMOND)?;
-        Ok(studio(diamond.compensated(tables, compensation, exact)?, Floor::COLOURED))
+        let lobe = tables.lobe(SIGMA, gamma)?;
+        studio(Dielectric::new(lobe, DIAMOND, settings(compensation))?, COLOURED)
     };
     let aluminium = |tilt| {
         move |(gamma, compensation)| {
-            let aluminium =
-                Conductor::new(tables.material(&brushed(tilt, gamma))?, Metal::Aluminium);
-            Ok(studio(aluminium.compensated(tables, compensation, exact)?, Floor::GREY))
+            let lobe = tables.material(&brushed(tilt, gamma))?;
+            studio(Conductor::new(lobe, Metal::Aluminium, settings(compensation))?, GREY)
         }
     };
 
@@ -189,7 +191,8 @@ fn materials(tables: &Tables) -> Result<Spheres, BindError> {
 fn roughness(tables: &Tables) -> Result<Spheres, BindError> {
     let each = |sigma: f64| {
         row(format!("σ = {sigma}"), &SHAPES, |gamma| {
-            Ok(studio(Conductor::new(tables.lobe(sigma, gamma)?, Metal::Aluminium), Floor::GREY))
+            let lobe = tables.lobe(sigma, gamma)?;
+            studio(Conductor::new(lobe, Metal::Aluminium, BsdfSettings::new())?, GREY)
         })
     };
     let rows = [0.05, 0.1, 0.3, 0.6, 1.0].into_iter().map(each).collect::<Result<_, _>>()?;
@@ -201,10 +204,11 @@ fn energy(tables: &Tables) -> Result<Spheres, BindError> {
     const SIGMAS: [f64; 6] = [0.01, 0.1, 0.3, 0.6, 1.0, 2.0];
     // As in the paper.
     let masking = Masking::Uncorrelated;
+    let settings = BsdfSettings::new().with_masking(masking);
     let each = |gamma| {
         row(label(gamma), &SIGMAS, |sigma| {
-            let white = Conductor::new(tables.lobe(sigma, gamma)?, ConductorFresnel::mirror());
-            let material = white.with_masking(masking).into();
+            let lobe = tables.lobe(sigma, gamma)?;
+            let material = Conductor::new(lobe, ConductorFresnel::mirror(), settings)?.into();
             let average = tables.albedo(sigma, gamma, masking)?.albedo_average();
             Ok((Scene { material, floor: None, sky: Sky::white() }, format!("{average:.3}")))
         })

@@ -4,7 +4,7 @@
 //! <https://doi.org/10.1145/97879.97886>).
 
 use glam::Vec3;
-use microfacet_sampler::Transport;
+use microfacet_sampler::{Bsdf, Transport};
 
 use crate::spheres::random::Random;
 use crate::spheres::scene::{Ray, Scene};
@@ -54,15 +54,15 @@ impl Tracer<'_> {
 
         // The next ray, drawn by the BSDF.
         let (choice, u) = (self.random.one(), self.random.two());
-        let Some(next) = hit.bsdf.sample(v, choice, u, Transport::Radiance) else {
+        let Some((next, pdf)) = hit.bsdf.sample_with_pdf(v, choice, u, Transport::Radiance) else {
             return radiance;
         };
         if bounces == MOST_BOUNCES {
             return radiance;
         }
         let weight = Vec3::from(next.weight);
-        let pdf = if next.delta { f32::INFINITY } else { next.pdf };
-        let ray = Ray { origin: hit.point, direction: hit.frame * next.l };
+        let pdf = if next.delta { f32::INFINITY } else { pdf };
+        let ray = Ray { origin: hit.point, direction: hit.frame * Vec3::from(next.l) };
 
         // A refraction scales radiance by 1/η² and takes no light from it.
         let share = share * weight * next.eta * next.eta;

@@ -2,13 +2,11 @@
 //!
 //! World coordinates are right-handed, y up. The sphere has radius 1 about the origin.
 
-use std::f32::consts::PI;
-
 use glam::{Mat3, Vec3};
 
-use microfacet_report::{by_cosine, tangent_frame};
-use microfacet_sampler::bsdf::Event;
-use microfacet_sampler::{AnyBsdf, Bsdf, BsdfSample, Transport};
+use microfacet_report::tangent_frame;
+use microfacet_sampler::lobe::Smooth;
+use microfacet_sampler::{AnyBsdf, BindError, BsdfSettings, Plastic};
 
 use crate::spheres::sky::Sky;
 
@@ -30,7 +28,7 @@ pub(crate) struct Hit<'a> {
     pub(crate) point: Vec3,
     /// Tangent, bitangent and normal as columns: from the tangent frame to the world.
     pub(crate) frame: Mat3,
-    pub(crate) bsdf: &'a dyn Bsdf,
+    pub(crate) bsdf: &'a AnyBsdf,
 }
 
 /// A sphere of a material, and what lights it.
@@ -74,48 +72,16 @@ fn sphere(ray: &Ray) -> Option<f32> {
 }
 
 /// The squares of a floor, of two kinds.
-pub(crate) struct Floor([Diffuse; 2]);
+pub(crate) struct Floor([AnyBsdf; 2]);
+
+pub(crate) const GREY: [[f32; 3]; 2] = [[0.07, 0.075, 0.085], [0.7, 0.67, 0.62]];
+/// Shows what a diamond refracts.
+pub(crate) const COLOURED: [[f32; 3]; 2] = [[0.03, 0.13, 0.45], [0.85, 0.42, 0.08]];
 
 impl Floor {
-    pub(crate) const GREY: Self = Self::of([0.07, 0.075, 0.085], [0.7, 0.67, 0.62]);
-    /// Shows what a diamond refracts.
-    pub(crate) const COLOURED: Self = Self::of([0.03, 0.13, 0.45], [0.85, 0.42, 0.08]);
-
-    const fn of(one: [f32; 3], other: [f32; 3]) -> Self {
-        Self([Diffuse { albedo: one }, Diffuse { albedo: other }])
-    }
-}
-
-/// A Lambert term, as a BSDF that is implemented outside the sampler.
-struct Diffuse {
-    albedo: [f32; 3],
-}
-
-impl Bsdf for Diffuse {
-    fn sample(&self, v: Vec3, _: f32, u: [f32; 2], _: Transport) -> Option<BsdfSample> {
-        let l = by_cosine(u);
-        (v.z > 0.0 && l.z > 0.0).then(|| BsdfSample {
-            l,
-            weight: self.albedo,
-            pdf: l.z / PI,
-            event: Event::Reflection,
-            delta: false,
-            eta: 1.0,
-        })
-    }
-
-    fn eval_pdf(&self, v: Vec3, l: Vec3, _: Transport) -> ([f32; 3], f32) {
-        match v.z > 0.0 && l.z > 0.0 {
-            true => (self.albedo.map(|albedo| albedo / PI), l.z / PI),
-            false => ([0.0; 3], 0.0),
-        }
-    }
-
-    fn is_delta(&self) -> bool {
-        false
-    }
-
-    fn transmits(&self) -> bool {
-        false
+    pub(crate) fn new([one, other]: [[f32; 3]; 2]) -> Result<Self, BindError> {
+        // A coat of index 1 leaves the Lambert base alone.
+        let square = |base| Plastic::new(Smooth.into(), 1.0, base, BsdfSettings::new());
+        Ok(Self([square(one)?.into(), square(other)?.into()]))
     }
 }

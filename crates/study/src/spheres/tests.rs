@@ -8,7 +8,8 @@ use microfacet_baker::scene::Scene as Materials;
 use microfacet_baker::table_set::{Settings, Target, bake_with};
 use microfacet_baker::table_spec::Quality;
 use microfacet_sampler::{
-    AnyBsdf, Compensation, Conductor, ConductorFresnel, Dielectric, Masking, StandIn, Tables,
+    AnyBsdf, BsdfSettings, Compensation, Conductor, ConductorFresnel, Dielectric, Masking, StandIn,
+    Tables,
 };
 use microfacet_tables::Precision;
 
@@ -34,10 +35,12 @@ fn furnaces(material: &AnyBsdf) -> [f32; 2] {
 #[test]
 fn white_metal_shows_its_average_albedo() -> Result<(), Box<dyn Error>> {
     let (tables, masking) = (Tables::embedded(), Masking::Uncorrelated);
+    let settings = BsdfSettings::new().with_masking(masking);
     for (sigma, gamma) in [(0.3, 1.51), (0.1, 1.65), (0.3, 2.0), (1.0, 50.0)] {
-        let metal = Conductor::new(tables.lobe(sigma, gamma)?, ConductorFresnel::mirror());
+        let lobe = tables.lobe(sigma, gamma)?;
+        let metal = Conductor::new(lobe, ConductorFresnel::mirror(), settings)?;
         let average = tables.albedo(sigma, gamma, masking)?.albedo_average();
-        for shown in furnaces(&metal.with_masking(masking).into()) {
+        for shown in furnaces(&metal.into()) {
             assert!((shown - average).abs() < 0.012, "{sigma} {gamma}: {shown} for {average}");
         }
     }
@@ -46,7 +49,8 @@ fn white_metal_shows_its_average_albedo() -> Result<(), Box<dyn Error>> {
 
 #[test]
 fn smooth_diamond_shows_all_light() -> Result<(), Box<dyn Error>> {
-    let diamond = Dielectric::new(Tables::embedded().lobe(0.0, 2.0)?, 2.42)?;
+    let lobe = Tables::embedded().lobe(0.0, 2.0)?;
+    let diamond = Dielectric::new(lobe, 2.42, BsdfSettings::new())?;
     for shown in furnaces(&diamond.into()) {
         assert!((shown - 1.0).abs() < 1e-3, "{shown}");
     }
@@ -61,7 +65,8 @@ fn rough_diamond_shows_all_light_where_it_is_given_back() -> Result<(), Box<dyn 
     let options = Options { embedded: true, ..Options::default() };
     let plan = Plan::new(&Materials::from_recipe_str(recipe)?, options)?;
     let target = Target::Quality(Quality::Draft, Precision::F32);
-    let tables = bake_with(&plan, target, Settings::default())?.set.or_embedded();
+    let baked = bake_with(&plan, target, Settings::default())?.set;
+    let tables = baked.with_fallback(&Tables::embedded());
     let diamond = tables.bsdf("diamond", Compensation::KullaConty, StandIn::Refused)?;
     for shown in furnaces(&diamond) {
         assert!((shown - 1.0).abs() < 0.02, "{shown}");

@@ -112,7 +112,7 @@ fn one(
     let draw = |choice, u| {
         count();
         let sample = drawn.sample(v, choice, u, Transport::Radiance)?;
-        (!sample.delta).then_some(sample.l)
+        (!sample.delta).then_some(sample.l.into())
     };
     // Facets alone, as often by reflection as by refraction.
     let facets = configuration.specimen.facets().bsdf(tables)?;
@@ -120,7 +120,7 @@ fn one(
     let mut by_facet = |i: usize| {
         let (choice, u) = ([0.0, 1.0][i % 2], [random.random(), random.random()]);
         let sample = facets.sample(v, choice, u, Transport::Radiance)?;
-        (!sample.delta).then_some(sample.l)
+        (!sample.delta).then_some(sample.l.into())
     };
     let guide: Vec<Vec3> = (0..PILOT[0]).filter_map(&mut by_facet).collect();
     let (seed, edges) = (configuration.seed, configuration.edges());

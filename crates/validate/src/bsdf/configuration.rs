@@ -7,7 +7,7 @@ use glam::Vec3;
 use rand::rngs::StdRng;
 use rand::{Rng, RngExt, SeedableRng};
 
-use microfacet_sampler::bsdf::steep_cosine;
+use microfacet_sampler::port::steep_cosine;
 use microfacet_sampler::{Compensation, Masking, Metal};
 
 use super::specimen::{LobeOf, Specimen, Surface};

@@ -120,7 +120,7 @@ pub fn compare(
         let l = match random.random::<bool>() {
             true => direction(&mut random),
             false => match bsdf.sample(v, choice, u, Transport::Radiance) {
-                Some(sample) => sample.l,
+                Some(sample) => sample.l.into(),
                 None => continue,
             },
         };

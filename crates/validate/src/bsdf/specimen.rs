@@ -8,8 +8,8 @@ use microfacet_baker::table_set::{Settings, Target, bake_with};
 use microfacet_baker::table_spec::{GAMMA_MIN, Quality};
 use microfacet_sampler::lobe::Smooth;
 use microfacet_sampler::{
-    AnyBsdf, BindError, Compensation, Conductor, ConductorFresnel, Dielectric, Ggx, Lobe, Masking,
-    MaterialError, Metal, Plastic, Skew, StandIn, Tables,
+    AnyBsdf, BindError, BsdfSettings, Compensation, Conductor, ConductorFresnel, Dielectric, Ggx,
+    Lobe, Masking, MaterialError, Metal, Plastic, Skew, StandIn, Tables,
 };
 use microfacet_tables::Precision;
 
@@ -124,31 +124,27 @@ impl Specimen {
 
     fn bound(&self, tables: &Tables) -> Result<AnyBsdf, BindError> {
         let lobe = self.lobe()?;
-        let (form, stand_in) = (self.compensation, StandIn::Round);
-        let conductor = |lobe: Lobe, fresnel: ConductorFresnel| {
-            let conductor = Conductor::new(lobe, fresnel).with_masking(self.masking);
-            Ok(conductor.compensated(&Tables::embedded(), form, stand_in)?.into())
-        };
-        match self.surface {
-            Surface::Mirror => conductor(lobe, ConductorFresnel::mirror()),
-            Surface::Schlick(f0) => conductor(lobe, ConductorFresnel::schlick(f0)?),
-            Surface::Metal(metal) => conductor(lobe, metal.into()),
-            Surface::Dielectric(eta) => {
-                let glass = Dielectric::new(lobe, eta)?.with_masking(self.masking);
-                Ok(glass.compensated(tables, form, stand_in)?.into())
-            }
+        let settings = BsdfSettings::new().with_masking(self.masking).with_stand_in(StandIn::Round);
+        let dielectric = settings.compensated(self.compensation, tables);
+        let fresnel = match self.surface {
+            Surface::Mirror => ConductorFresnel::mirror(),
+            Surface::Schlick(f0) => ConductorFresnel::schlick(f0)?,
+            Surface::Metal(metal) => metal.into(),
+            Surface::Dielectric(eta) => return Ok(Dielectric::new(lobe, eta, dielectric)?.into()),
             Surface::Plastic(eta, base) => {
-                let masking = self.masking;
-                Ok(Plastic::new_masked(lobe, eta, base, masking, tables, form, stand_in)?.into())
+                return Ok(Plastic::new(lobe, eta, base, dielectric)?.into());
             }
-        }
+        };
+        let tables = Tables::embedded();
+        let conductor = settings.compensated(self.compensation, &tables);
+        Ok(Conductor::new(lobe, fresnel, conductor)?.into())
     }
 
     /// σ and η of the albedos that are needed, of a round lobe; `None` if none are.
     fn wanted(&self) -> Option<[f64; 2]> {
         let eta = match self.surface {
-            Surface::Dielectric(eta) if self.compensation != Compensation::None => eta,
-            Surface::Plastic(eta, _) => eta,
+            _ if self.compensation == Compensation::None => return None,
+            Surface::Dielectric(eta) | Surface::Plastic(eta, _) => eta,
             _ => return None,
         };
         let [x, y] = self.sigma.map(f64::from);

@@ -2,8 +2,7 @@
 
 use glam::Vec3;
 
-use microfacet_sampler::bsdf::Event;
-use microfacet_sampler::{Bsdf, BsdfSample, Transport};
+use microfacet_sampler::{Bsdf, BsdfSample, Event, Transport};
 
 use super::bsdfs::Bsdfs;
 use super::checks::Checker;
@@ -49,13 +48,15 @@ impl Checker<'_> {
     ) {
         let choices = [at.u[1], 0.0, 1.0, at.u[0], f32::NAN, 0.5];
         let choice = choices[turn % choices.len()];
-        let sample = bsdf.sample(v, choice, at.u, transport);
+        let sample = bsdf.sample_with_pdf(v, choice, at.u, transport);
         let l = direction(3.2 * f64::from(at.u[1]), at.phi + 2.0);
         let mut lights = vec![l, v, -v, Vec3::new(-v.x, -v.y, v.z), Vec3::X, Vec3::NAN];
-        if let Some(sample) = sample {
-            self.sample(&sample, v, at, most, bsdf.is_delta());
-            lights.push(sample.l);
+        if let Some((sample, pdf)) = sample {
+            self.sample(&sample, pdf, v, at, most, bsdf.is_delta());
+            lights.push(sample.l.into());
         }
+        let same = bsdf.sample(v, choice, at.u, transport) == sample.map(|(sample, _)| sample);
+        self.require(same, "bsdf samples differ with and without pdf", 0.0, at);
         for l in lights {
             let ([f], pdf) = bsdf.eval_pdf(v, l, transport);
             self.density(f, "bsdf f negative, NaN or inf", at);
@@ -70,12 +71,14 @@ impl Checker<'_> {
     fn sample(
         &mut self,
         sample: &BsdfSample<1>,
+        pdf: f32,
         v: Vec3,
         at: &Point,
         most: [f64; 2],
         is_delta: bool,
     ) {
-        let &BsdfSample { l, weight: [weight], pdf, event, delta, .. } = sample;
+        let &BsdfSample { l, weight: [weight], event, delta, .. } = sample;
+        let l = Vec3::from(l);
         self.unit(l.as_dvec3(), ROUNDING, "bsdf light not of unit length", at);
         let side = ((v.z > 0.0) == (l.z > 0.0) && l.z != 0.0) == (event == Event::Reflection);
         self.require(side, "bsdf light not on the side of its event", l.z, at);

@@ -2,7 +2,8 @@
 
 use microfacet_sampler::lobe::Smooth;
 use microfacet_sampler::{
-    Compensation, Conductor, ConductorFresnel, Dielectric, Lobe, Masking, Plastic, StandIn, Tables,
+    BsdfSettings, Compensation, Conductor, ConductorFresnel, Dielectric, Lobe, Masking, Plastic,
+    StandIn, Tables,
 };
 
 /// Indices of refraction, among them both ends of the allowed range, and 1.
@@ -15,21 +16,22 @@ pub(super) struct Bsdfs {
 
 impl Bsdfs {
     pub(super) fn new(lobe: &Lobe, tables: &Tables) -> Self {
-        let mirror = Conductor::new(lobe.clone(), ConductorFresnel::mirror());
-        let forms = [Compensation::Turquin, Compensation::KullaConty];
+        let settings = BsdfSettings::new().with_stand_in(StandIn::Round);
+        let forms = [Compensation::None, Compensation::Turquin, Compensation::KullaConty];
         // A roughness outside the tables has no albedo.
-        let compensated =
-            forms.map(|form| mirror.clone().compensated(tables, form, StandIn::Round).ok());
-        let conductors = [Some(mirror)].into_iter().chain(compensated).flatten().collect();
+        let conductor = |form| {
+            let settings = settings.compensated(form, tables);
+            Conductor::new(lobe.clone(), ConductorFresnel::mirror(), settings).ok()
+        };
+        let conductors = forms.into_iter().filter_map(conductor).collect();
         let dielectric = |(i, eta): (usize, f64)| {
-            let dielectric = Dielectric::new(lobe.clone(), eta).expect("an index in the range");
-            let dielectric = dielectric.with_masking(Masking::ALL[i % 2]).with_channels();
+            let settings = settings.with_masking(Masking::ALL[i % 2]);
+            let dielectric = Dielectric::new(lobe.clone(), eta, settings);
+            let dielectric = dielectric.expect("an index in the range").with_channels();
             (dielectric.eta() as f32, dielectric)
         };
         let dielectrics = ETAS.into_iter().enumerate().map(dielectric).collect();
-        let (form, stand_in) = (Compensation::None, StandIn::Refused);
-        let plastic = Plastic::new(Smooth, 1.5, [1.0], tables, form, stand_in)
-            .expect("a smooth coat needs no tables");
+        let plastic = Plastic::new(Smooth, 1.5, [1.0], settings).expect("an index in the range");
         Self { conductors, dielectrics, plastic }
     }
 }

@@ -4,6 +4,7 @@ use glam::{DVec3, Vec3};
 
 use microfacet_model::MicrofacetDistribution as _;
 use microfacet_model::{self as model, SignedSlope, VisibleSlope};
+use microfacet_sampler::lobe::Tabulated;
 use microfacet_sampler::{
     Ggx, Lobe, Masking, MaterialError, MicrofacetDistribution as _, Skew, Tables,
 };
@@ -197,7 +198,7 @@ impl Checker<'_> {
     fn normal(&mut self, at: &Point, last: &mut f64) {
         self.report.region(at).points += 1;
         let v = at.view();
-        let m = self.lobe.sample_visible_normal(v, at.u);
+        let m = Vec3::from(self.lobe.sample_visible_normal(v, at.u));
         self.unit_and_above(m, at);
         let facing = v.as_dvec3().dot(m.as_dvec3());
         let seen = v.z < 0.0 || facing >= -ULP4;
@@ -271,7 +272,7 @@ impl Checker<'_> {
     /// Difference between u₁ and the share of visible normals tilted less than the one drawn.
     fn cdf_error(&mut self, at: &Point) {
         let v = at.view();
-        let tilt = self.tilt(v, self.lobe.sample_visible_normal(v, at.u));
+        let tilt = self.tilt(v, self.lobe.sample_visible_normal(v, at.u).into());
         if !self.rises || tilt.rounding > 1e-5 {
             return;
         }

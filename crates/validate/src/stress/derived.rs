@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use microfacet_sampler::albedo::Albedo;
-use microfacet_sampler::lobe::Bounded;
+use microfacet_sampler::lobe::{Batch, Bounded};
 use microfacet_sampler::{Ellipsoid, Masking, MicrofacetDistribution, Skew};
 
 use super::checks::{Checker, ULP4};
@@ -26,7 +26,8 @@ impl Checker<'_> {
         self.require(g1_done && same(apart), "g1_batch differs", apart, &points[0]);
 
         for (at, m) in points.iter().zip(normals) {
-            let apart = (m - self.lobe.sample_visible_normal(v, at.u)).abs().max_element();
+            let one = Vec3::from(self.lobe.sample_visible_normal(v, at.u));
+            let apart = (m - one).abs().max_element();
             self.require(done && same(apart), "sample_batch differs", apart, at);
         }
     }
@@ -39,7 +40,7 @@ impl Checker<'_> {
         self.require(sound, "bounded share outside (0, 1]", share, &points[0]);
         for at in points {
             let m = bounded.sample(at.u);
-            self.unit_and_above(m, at);
+            self.unit_and_above(m.into(), at);
             for pdf in [bounded.visible_normal_pdf(m), bounded.table_pdf(m)] {
                 self.density(pdf, "bounded pdf negative, NaN or inf", at);
             }
@@ -55,7 +56,7 @@ impl Checker<'_> {
             let v = points[0].view();
             self.share(lobe.g1(v), "ellipsoid g1 outside [0, 1]", &points[0]);
             for at in points {
-                let m = lobe.sample_visible_normal(v, at.u);
+                let m = Vec3::from(lobe.sample_visible_normal(v, at.u));
                 self.unit(m.as_dvec3(), ULP4, "ellipsoid normal not of unit length", at);
                 let l = 2.0 * v.dot(m) * m - v;
                 let weight = f64::from(lobe.reflection_weight(v, l, Masking::Uncorrelated));
@@ -82,7 +83,7 @@ impl Checker<'_> {
         let sound = (1.0..=1.1e6).contains(&factor);
         self.require(sound, "turquin factor outside [1, 1e6]", factor, at);
         self.share(albedo.multiple_bounces(at.u[0]), "multiple_bounces outside [0, 1]", at);
-        let l = albedo.sample_compensation(at.u);
+        let l = Vec3::from(albedo.sample_compensation(at.u));
         self.unit(l.as_dvec3(), ULP4, "compensation light not of unit length", at);
         self.require(l.z >= 0.0, "compensation light below the horizon", l.z, at);
     }
