@@ -9,14 +9,14 @@ fn load(bytes: &[u8]) {
     let Ok(set) = microfacet_sampler::Tables::from_bytes(&bytes) else { return };
     for gamma in [1.501, 1.8, 2.0, 3.0, f64::INFINITY] {
         let Ok(material) = set.student_t(0.3_f32, gamma) else { continue };
-        let v = glam::Vec3::new(0.6, 0.0, 0.8);
+        let v = [0.6, 0.0, 0.8];
         for u in [[0.0, 0.0], [0.3, 0.7], [1.0, 1.0]] {
             let m = material.sample_visible_normal(v, u);
             let _ = (material.table_pdf(v, m), material.visible_normal_pdf(v, m), material.g1(m));
         }
     }
     for material in &set.provenance().materials {
-        let v = glam::Vec3::new(0.6, 0.0, 0.8);
+        let v = [0.6, 0.0, 0.8];
         if let Ok(lobe) = set.material(&material.name) {
             let m = lobe.sample_visible_normal(v, [0.3, 0.7]);
             let _ = (lobe.visible_normal_pdf(v, m), lobe.g1(m), lobe.d(m));
@@ -30,7 +30,7 @@ fn albedos(set: &microfacet_sampler::Tables) {
     use microfacet_sampler::albedo::FresnelAlbedo;
     use microfacet_sampler::Masking;
     let share = |x: f32| assert!((0.0..=1.0).contains(&x), "an albedo of {x}");
-    let view = |cos: f32| glam::Vec3::new(0.0, (1.0_f32 - cos * cos).sqrt(), cos);
+    let view = |cos: f32| [0.0, (1.0_f32 - cos * cos).sqrt(), cos];
     for (sigma, gamma) in [(0.0, 2.0), (1e-9, 1.501), (0.3, 2.0), (3.0, f64::INFINITY), (f64::NAN, 2.0)] {
         for masking in Masking::ALL {
             if let Ok(albedo) = set.albedo(sigma, gamma, masking) {

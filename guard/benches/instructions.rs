@@ -7,7 +7,7 @@ use gungraun::{
     Callgrind, EventKind, LibraryBenchmarkConfig, library_benchmark, library_benchmark_group, main,
 };
 use microfacet_guard::{CALLS, Inputs};
-use microfacet_sampler::lobe::Bounded;
+use microfacet_sampler::lobe::{Batch, Bounded, Tabulated};
 use microfacet_sampler::{
     Bsdf, Conductor, Ellipsoid, Ggx, MicrofacetDistribution, StudentT, Transport,
 };
@@ -22,6 +22,12 @@ fn at_most(instructions: f64) -> LibraryBenchmarkConfig {
     config
 }
 
+/// The sum of normals, each of which is computed.
+#[inline(always)]
+fn sum(normals: impl Iterator<Item = [f32; 3]>) -> Vec3 {
+    black_box(normals.map(|m| Vec3::from(black_box(m))).sum())
+}
+
 // Nothing is allocated, and inputs are returned, not freed: the cost of an allocation depends on
 // the earlier ones.
 
@@ -33,10 +39,7 @@ fn at_most(instructions: f64) -> LibraryBenchmarkConfig {
 #[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(305.4))]
 fn sample_visible_normal(inputs: Inputs<StudentT>) -> (Vec3, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.u);
-    (
-        black_box(calls.map(|(v, u)| black_box(inputs.lobe.sample_visible_normal(*v, *u))).sum()),
-        inputs,
-    )
+    (sum(calls.map(|(v, u)| inputs.lobe.sample_visible_normal(*v, *u))), inputs)
 }
 
 #[library_benchmark]
@@ -86,7 +89,7 @@ fn table_pdf(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
 #[bench::common(args = (2.5), setup = Inputs::bounded, config = at_most(311.6))]
 fn bounded(inputs: Inputs<Bounded>) -> (Vec3, Inputs<Bounded>) {
     let calls = inputs.v.iter().zip(&inputs.u);
-    (black_box(calls.map(|(v, u)| black_box(inputs.lobe.at(*v).sample(*u))).sum()), inputs)
+    (sum(calls.map(|(v, u)| inputs.lobe.at(*v).sample(*u))), inputs)
 }
 
 #[library_benchmark]
@@ -107,10 +110,7 @@ fn ellipsoid_g1(inputs: Inputs<Ellipsoid>) -> (f32, Inputs<Ellipsoid>) {
 #[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(696.0))]
 fn ellipsoid_sample_visible_normal(inputs: Inputs<Ellipsoid>) -> (Vec3, Inputs<Ellipsoid>) {
     let calls = inputs.v.iter().zip(&inputs.u);
-    (
-        black_box(calls.map(|(v, u)| black_box(inputs.lobe.sample_visible_normal(*v, *u))).sum()),
-        inputs,
-    )
+    (sum(calls.map(|(v, u)| inputs.lobe.sample_visible_normal(*v, *u))), inputs)
 }
 
 /// GGX without tables.
@@ -128,10 +128,7 @@ fn ggx_g1(inputs: Inputs<Ggx>) -> (f32, Inputs<Ggx>) {
 #[bench::closed_form(setup = closed_form, config = at_most(135.1))]
 fn ggx_sample_visible_normal(inputs: Inputs<Ggx>) -> (Vec3, Inputs<Ggx>) {
     let calls = inputs.v.iter().zip(&inputs.u);
-    (
-        black_box(calls.map(|(v, u)| black_box(inputs.lobe.sample_visible_normal(*v, *u))).sum()),
-        inputs,
-    )
+    (sum(calls.map(|(v, u)| inputs.lobe.sample_visible_normal(*v, *u))), inputs)
 }
 
 // With Schlick's reflectance and without compensation; the light that is evaluated is another
@@ -146,7 +143,19 @@ fn conductor_sample((conductor, inputs): Conductors) -> (f32, Conductors) {
     let calls = inputs.v.iter().zip(&inputs.u);
     let one = |(v, u): (&Vec3, &[f32; 2])| {
         let path = black_box(conductor.sample(*v, 0.5, *u, Transport::Radiance));
-        path.map_or(0.0, |path| path.pdf)
+        path.map_or(0.0, |path| path.weight[0])
+    };
+    (black_box(calls.map(one).sum()), (conductor, inputs))
+}
+
+#[library_benchmark]
+#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(413.7))]
+#[bench::heavy(args = (1.6), setup = microfacet_guard::conductor, config = at_most(489.3))]
+fn conductor_sample_with_pdf((conductor, inputs): Conductors) -> (f32, Conductors) {
+    let calls = inputs.v.iter().zip(&inputs.u);
+    let one = |(v, u): (&Vec3, &[f32; 2])| {
+        let path = black_box(conductor.sample_with_pdf(*v, 0.5, *u, Transport::Radiance));
+        path.map_or(0.0, |(_, pdf)| pdf)
     };
     (black_box(calls.map(one).sum()), (conductor, inputs))
 }
@@ -174,6 +183,7 @@ library_benchmark_group!(
         ellipsoid_g1,
         ellipsoid_sample_visible_normal,
         conductor_sample,
+        conductor_sample_with_pdf,
         conductor_eval_pdf,
         ggx_g1,
         ggx_sample_visible_normal,

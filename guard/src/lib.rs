@@ -4,7 +4,8 @@ use glam::Vec3;
 
 use microfacet_sampler::lobe::Bounded;
 use microfacet_sampler::{
-    Conductor, ConductorFresnel, Ellipsoid, MicrofacetDistribution, Skew, StudentT, Tables,
+    BsdfSettings, Conductor, ConductorFresnel, Ellipsoid, MicrofacetDistribution, Skew, StudentT,
+    Tables,
 };
 
 /// Calls of each function; a count divided by it is instructions per call.
@@ -59,7 +60,8 @@ impl Inputs<Ellipsoid> {
 pub fn conductor(gamma: f64) -> (Conductor<StudentT>, Inputs<StudentT>) {
     let inputs = Inputs::new(gamma);
     let fresnel = ConductorFresnel::schlick([0.9, 0.7, 0.3]).expect("reflectances");
-    (Conductor::new(inputs.lobe.clone(), fresnel), inputs)
+    let conductor = Conductor::new(inputs.lobe.clone(), fresnel, BsdfSettings::new());
+    (conductor.expect("no albedo is needed"), inputs)
 }
 
 impl<L: MicrofacetDistribution> Inputs<L> {
@@ -79,7 +81,7 @@ impl<L: MicrofacetDistribution> Inputs<L> {
         let numbers =
             (0..CALLS).map(|i| [at(i, 0.754_877_666_246_692_7), at(i, 0.569_840_290_998_053_3)]);
         let (v, u): (Vec<_>, Vec<_>) = (views.collect(), numbers.collect());
-        let m = v.iter().zip(&u).map(|(v, u)| lobe.sample_visible_normal(*v, *u)).collect();
+        let m = v.iter().zip(&u).map(|(v, u)| lobe.sample_visible_normal(*v, *u).into()).collect();
         Self { lobe, v, u, m, g1: vec![0.0; CALLS] }
     }
 }

@@ -238,7 +238,7 @@ impl Case<'_> {
             let weight = lobe.reflection_weight(v, l, masking);
             self.see("reflection_weight", far(answer.weight[k], weight), limits.share);
         }
-        let normal = lobe.sample_visible_normal(v, point.u).to_array();
+        let normal = lobe.sample_visible_normal(v, point.u);
         let is_rough = sigma[0].max(sigma[1]) > ROUGH;
         let heavy = self.gamma < HEAVY && (is_rough || v.z < 1e-6);
         let (mut name, mut allowed) =

@@ -87,7 +87,7 @@ fn agrees(gpu: &Gpu, folder: &Path, name: &str) -> bool {
     for (&[gamma, sigma, mu, _], &e) in places.iter().zip(&found) {
         let [gamma, sigma] = [gamma, sigma].map(f64::from);
         let albedo = tables.albedo(sigma, gamma, masking).expect("an albedo");
-        let exact = f64::from(albedo.albedo(glam::Vec3::new((1.0 - mu * mu).sqrt(), 0.0, mu)));
+        let exact = f64::from(albedo.albedo([(1.0 - mu * mu).sqrt(), 0.0, mu]));
         let common = sigma >= 0.01 && mu >= 0.02;
         let share = (f64::from(e) - exact).abs() / (allowed + CRATE[usize::from(!common)]);
         worst = worst.max(if share.is_nan() { f64::INFINITY } else { share });

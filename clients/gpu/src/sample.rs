@@ -52,7 +52,7 @@ pub fn runs(gpu: &Gpu, export: &Export) -> bool {
         let mean = f64::from(sigma[0] * sigma[1]).sqrt();
         let albedo = tables.albedo(mean, gamma, Masking::HeightCorrelated).expect("albedos");
         let v = Vec3::from(query.v);
-        let m = lobe.sample_visible_normal(v, query.u);
+        let m = Vec3::from(lobe.sample_visible_normal(v, query.u));
         let l = 2.0 * v.dot(m) * m - v;
         let pdf = lobe.visible_normal_pdf(v, m) / (4.0 * v.dot(m));
         let f = if l.z > 0.0 { albedo.compensation(v, l) } else { 0.0 };

@@ -9,8 +9,8 @@ use std::path::Path;
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec2, Vec3};
 use microfacet_sampler::{
-    Bsdf, Compensation, Conductor, ConductorFresnel, MicrofacetDistribution, StandIn, StudentT,
-    Tables, Transport,
+    Bsdf, BsdfSettings, Compensation, Conductor, ConductorFresnel, MicrofacetDistribution,
+    StudentT, Tables, Transport,
 };
 
 use crate::device::Gpu;
@@ -100,9 +100,8 @@ fn by_crate(scene: &Scene) -> Vec<Vec3> {
     let tables = Tables::embedded();
     let lobe = tables.student_t(f64::from(scene.sigma), GAMMA).expect("a lobe");
     let fresnel = ConductorFresnel::schlick(scene.metal).expect("reflectances");
-    let metal = Conductor::new(lobe.clone(), fresnel)
-        .compensated(&tables, Compensation::KullaConty, StandIn::Refused)
-        .expect("albedos of a round lobe");
+    let settings = BsdfSettings::new().compensated(Compensation::KullaConty, &tables);
+    let metal = Conductor::new(lobe.clone(), fresnel, settings).expect("albedos of a round lobe");
     let size = scene.size as f32;
     let pixel = |i: u32| {
         let mut state = i;
@@ -141,7 +140,7 @@ fn reflected(
     let r = ((1.0 - z) * (1.0 + z)).sqrt();
     let by_light = frame(axis) * Vec3::new(r * cos, r * sin, z);
     let u = [random(state), random(state)];
-    let facet = lobe.sample_visible_normal(v, u);
+    let facet = Vec3::from(lobe.sample_visible_normal(v, u));
     let by_metal = 2.0 * v.dot(facet) * facet - v;
     let mut sum = Vec3::ZERO;
     for l in [by_light, by_metal] {

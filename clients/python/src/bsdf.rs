@@ -4,9 +4,8 @@ use pyo3::basic::CompareOp;
 use pyo3::prelude::*;
 use pyo3::types::{PyEllipsis, PySlice, PyTuple};
 
-use microfacet_sampler::bsdf::Event;
 use microfacet_sampler::{
-    AnyBsdf, Bsdf, Conductor, ConductorFresnel, Dielectric, Lobe, Metal, Plastic,
+    AnyBsdf, Bsdf, Conductor, ConductorFresnel, Dielectric, Event, Lobe, Metal, Plastic,
 };
 
 use crate::arrays::{Any, Cost, Input, each2, each3};
@@ -63,15 +62,13 @@ impl PyBsdf {
     fn eval<'py>(&self, v: &Any<'py>, l: &Any<'py>, transport: &str) -> PyResult<Any<'py>> {
         let mode = words::transport(transport)?;
         let (v, l) = (Input::new("v", v)?, Input::new("l", l)?);
-        each2(&v, &l, Cost::Lookup, |v: [f32; 3], l: [f32; 3]| {
-            self.bsdf.eval(v.into(), l.into(), mode)
-        })
+        each2(&v, &l, Cost::Lookup, |v: [f32; 3], l: [f32; 3]| self.bsdf.eval(v, l, mode))
     }
 
     /// The density with which sample draws l for v, per steradian.
     fn pdf<'py>(&self, v: &Any<'py>, l: &Any<'py>) -> PyResult<Any<'py>> {
         let (v, l) = (Input::new("v", v)?, Input::new("l", l)?);
-        each2(&v, &l, Cost::Lookup, |v: [f32; 3], l: [f32; 3]| [self.bsdf.pdf(v.into(), l.into())])
+        each2(&v, &l, Cost::Lookup, |v: [f32; 3], l: [f32; 3]| [self.bsdf.pdf(v, l)])
     }
 
     /// Draws lights for views v from uniform numbers: u, shape (..., 2), for the direction and
@@ -89,13 +86,13 @@ impl PyBsdf {
         let (v, choice) = (Input::new("v", v)?, Input::new("choice", choice)?);
         let u = Input::new("u", u)?;
         let draw = |v: [f32; 3], [choice]: [f32; 1], u: [f32; 2]| {
-            let Some(sample) = self.bsdf.sample(v.into(), choice, u, mode) else {
+            let Some((sample, pdf)) = self.bsdf.sample_with_pdf(v, choice, u, mode) else {
                 return [0.0; 10];
             };
-            let ([x, y, z], [r, g, b]) = (sample.l.to_array(), sample.weight);
+            let ([x, y, z], [r, g, b]) = (sample.l, sample.weight);
             let [other, delta] = [sample.event == Event::Transmission, sample.delta]
                 .map(|flag| f32::from(u8::from(flag)));
-            [x, y, z, r, g, b, sample.pdf, sample.eta, other, delta]
+            [x, y, z, r, g, b, pdf, sample.eta, other, delta]
         };
         let all = each3(&v, &choice, &u, Cost::Lookup, draw)?;
         // Columns are copied: a view of the array would keep all ten, and its sums would round
@@ -179,14 +176,10 @@ impl PyConductor {
                 ));
             }
         };
-        let (masking, compensation) =
-            (words::masking(masking)?, words::compensation(compensation)?);
         let about = format!("Conductor({})", lobe.repr()?);
         let PyLobe { lobe, tables } = lobe.get();
-        let conductor = Conductor::new(Lobe::clone(lobe), fresnel)
-            .with_masking(masking)
-            .compensated(tables, compensation, words::stand_in(stand_in))
-            .map_err(unbound)?;
+        let settings = words::settings(masking, compensation, tables, stand_in)?;
+        let conductor = Conductor::new(Lobe::clone(lobe), fresnel, settings).map_err(unbound)?;
         Ok(PyClassInitializer::from(PyBsdf::new(conductor, about)).add_subclass(Self {}))
     }
 }
@@ -212,18 +205,15 @@ impl PyDielectric {
     ) -> PyResult<PyClassInitializer<Self>> {
         let about = format!("Dielectric({}, eta={eta})", lobe.repr()?);
         let PyLobe { lobe, tables } = lobe.get();
-        let dielectric = Dielectric::new(Lobe::clone(lobe), eta)
-            .map_err(unbound)?
-            .with_masking(words::masking(masking)?)
-            .compensated(tables, words::compensation(compensation)?, words::stand_in(stand_in))
-            .map_err(unbound)?;
+        let settings = words::settings(masking, compensation, tables, stand_in)?;
+        let dielectric = Dielectric::new(Lobe::clone(lobe), eta, settings).map_err(unbound)?;
         Ok(PyClassInitializer::from(PyBsdf::new(dielectric, about)).add_subclass(Self {}))
     }
 }
 
 /// A rough dielectric coat of a lobe, of index eta, over a diffuse base, a colour in [0, 1].
 ///
-/// A rough coat needs a set of tables that was baked for it, without compensation too.
+/// A compensation needs a set of tables that was baked for the coat; see Conductor.
 #[pyclass(name = "Plastic", module = "microfacet", extends = PyBsdf, frozen)]
 pub(crate) struct PyPlastic {}
 
@@ -242,16 +232,9 @@ impl PyPlastic {
     ) -> PyResult<PyClassInitializer<Self>> {
         let about = format!("Plastic({}, eta={eta})", lobe.repr()?);
         let PyLobe { lobe, tables } = lobe.get();
-        let plastic = Plastic::new_masked(
-            Lobe::clone(lobe),
-            eta,
-            words::reflectance("base", base)?,
-            words::masking(masking)?,
-            tables,
-            words::compensation(compensation)?,
-            words::stand_in(stand_in),
-        )
-        .map_err(unbound)?;
+        let settings = words::settings(masking, compensation, tables, stand_in)?;
+        let base = words::reflectance("base", base)?;
+        let plastic = Plastic::new(Lobe::clone(lobe), eta, base, settings).map_err(unbound)?;
         Ok(PyClassInitializer::from(PyBsdf::new(plastic, about)).add_subclass(Self {}))
     }
 }

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use bytemuck::{cast_slice, cast_slice_mut};
 use microfacet_model::{Ellipsoid, MicrofacetDistribution as _, StudentT};
+use microfacet_sampler::lobe::Batch as _;
 use microfacet_sampler::{Lobe, MicrofacetDistribution as _};
 use numpy::Element;
 use pyo3::prelude::*;
@@ -24,10 +24,17 @@ pub(crate) enum Model {
     Skewed(Box<Ellipsoid>),
 }
 
-/// Calls a function of either lobe; of tables by an expression of their own, where one is given.
+/// Calls a function of either lobe, whose vectors the conversion given makes of three numbers; of
+/// tables by an expression of their own, where one is given.
 macro_rules! of {
-    ($kind:expr, $lobe:ident => $call:expr) => {
-        of!($kind, $lobe => $call, $lobe => $call)
+    ($kind:expr, $lobe:ident, $to:ident => $call:expr) => {
+        of!($kind, $lobe => {
+            let $to = std::convert::identity::<[f32; 3]>;
+            $call
+        }, $lobe => {
+            let $to = |v: [f64; 3]| v.into();
+            $call
+        })
     };
     ($kind:expr, $tables:ident => $batch:expr, $lobe:ident => $call:expr) => {
         match $kind {
@@ -57,8 +64,8 @@ impl PyDistribution {
     ///
     /// D(m) (m.n) integrates to 1 over all m; 0 for an m at or below the horizon.
     fn d<'py>(&self, m: &Any<'py>) -> PyResult<Any<'py>> {
-        of!(&self.kind, lobe => {
-            each(&Input::new("m", m)?, Cost::Lookup, |m: [_; 3]| [lobe.d(m.into())])
+        of!(&self.kind, lobe, to => {
+            each(&Input::new("m", m)?, Cost::Lookup, |m: [_; 3]| [lobe.d(to(m))])
         })
     }
 
@@ -67,7 +74,7 @@ impl PyDistribution {
         of!(&self.kind,
             lobe => {
                 let g1 = |v: &[[f32; 3]], g1: &mut [[f32; 1]]| {
-                    lobe.g1_batch(cast_slice(v), g1.as_flattened_mut()).expect("as many of each");
+                    lobe.g1_batch(v, g1.as_flattened_mut()).expect("as many of each");
                 };
                 map(&Input::new("v", v)?, Cost::Lookup, g1)
             },
@@ -77,8 +84,8 @@ impl PyDistribution {
 
     /// Smith's Lambda(v) = 1/G1 - 1; infinite at and below the horizon.
     fn lambda_<'py>(&self, v: &Any<'py>) -> PyResult<Any<'py>> {
-        of!(&self.kind, lobe => {
-            each(&Input::new("v", v)?, Cost::Lookup, |v: [_; 3]| [lobe.lambda(v.into())])
+        of!(&self.kind, lobe, to => {
+            each(&Input::new("v", v)?, Cost::Lookup, |v: [_; 3]| [lobe.lambda(to(v))])
         })
     }
 
@@ -89,9 +96,9 @@ impl PyDistribution {
     #[pyo3(signature = (v, l, masking="height-correlated"))]
     fn g2<'py>(&self, v: &Any<'py>, l: &Any<'py>, masking: &str) -> PyResult<Any<'py>> {
         let form = words::masking(masking)?;
-        of!(&self.kind, lobe => {
+        of!(&self.kind, lobe, to => {
             let (v, l) = (Input::new("v", v)?, Input::new("l", l)?);
-            let g2 = |v: [_; 3], l: [_; 3]| [lobe.g2(v.into(), l.into(), form)];
+            let g2 = |v: [_; 3], l: [_; 3]| [lobe.g2(to(v), to(l), form)];
             each2(&v, &l, Cost::Lookup, g2)
         })
     }
@@ -105,8 +112,7 @@ impl PyDistribution {
             lobe => {
                 let (v, u) = (Input::new("v", v)?, Input::new("u", u)?);
                 let sample = |v: &[[f32; 3]], u: &[[f32; 2]], m: &mut [[f32; 3]]| {
-                    let done = lobe.sample_batch(cast_slice(v), u, cast_slice_mut(m));
-                    done.expect("as many of each");
+                    lobe.sample_batch(v, u, m).expect("as many of each");
                 };
                 map2(&v, &u, Cost::Lookup, sample)
             },
@@ -121,9 +127,9 @@ impl PyDistribution {
 
     /// The density of visible normals, G1(v) max(0, v.m) D(m)/(v.n), per steradian of m.
     fn visible_normal_pdf<'py>(&self, v: &Any<'py>, m: &Any<'py>) -> PyResult<Any<'py>> {
-        of!(&self.kind, lobe => {
+        of!(&self.kind, lobe, to => {
             let (v, m) = (Input::new("v", v)?, Input::new("m", m)?);
-            let pdf = |v: [_; 3], m: [_; 3]| [lobe.visible_normal_pdf(v.into(), m.into())];
+            let pdf = |v: [_; 3], m: [_; 3]| [lobe.visible_normal_pdf(to(v), to(m))];
             each2(&v, &m, Cost::Lookup, pdf)
         })
     }
@@ -138,9 +144,9 @@ impl PyDistribution {
         masking: &str,
     ) -> PyResult<Any<'py>> {
         let form = words::masking(masking)?;
-        of!(&self.kind, lobe => {
+        of!(&self.kind, lobe, to => {
             let (v, l) = (Input::new("v", v)?, Input::new("l", l)?);
-            let weight = |v: [_; 3], l: [_; 3]| [lobe.reflection_weight(v.into(), l.into(), form)];
+            let weight = |v: [_; 3], l: [_; 3]| [lobe.reflection_weight(to(v), to(l), form)];
             each2(&v, &l, Cost::Lookup, weight)
         })
     }

@@ -2,10 +2,8 @@
 
 use std::sync::{Arc, LazyLock};
 
-use bytemuck::cast_slice;
-use glam::Vec3;
 use microfacet_sampler::albedo::Albedo;
-use microfacet_sampler::lobe::LobeKey;
+use microfacet_sampler::lobe::{Batch, LobeKey, Tabulated};
 use microfacet_sampler::{Lobe, MicrofacetDistribution, Skew, Tables};
 use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyMemoryError;
@@ -56,7 +54,7 @@ impl PyLobe {
         masking: &str,
         cos_theta: Option<&Any<'py>>,
         stand_in: bool,
-        of: impl Fn(&Albedo, Vec3) -> [f32; M] + Sync,
+        of: impl Fn(&Albedo, [f32; 3]) -> [f32; M] + Sync,
     ) -> PyResult<Any<'py>> {
         let albedo = self.albedo_of(masking, stand_in)?;
         let views = View::new(v, cos_theta)?;
@@ -68,7 +66,7 @@ impl PyLobe {
         if turned && matches!(views, View::Cosines(_)) && self.albedo_of(masking, false).is_ok() {
             return Err(azimuth_matters());
         }
-        views.each(Cost::Lookup, |v| of(&albedo, v.into()))
+        views.each(Cost::Lookup, |v| of(&albedo, v))
     }
 }
 
@@ -139,9 +137,9 @@ impl PyLobe {
         let (v, u): (&[[f32; 3]], _) = (v.as_chunks().0, u.as_chunks().0);
         let mut m = Vec::new();
         m.try_reserve_exact(v.len()).map_err(|why| PyMemoryError::new_err(why.to_string()))?;
-        m.resize(v.len(), Vec3::ZERO);
+        m.resize(v.len(), [0.0; 3]);
         let start = std::time::Instant::now();
-        self.lobe.sample_batch(cast_slice(v), u, &mut m).map_err(refused)?;
+        self.lobe.sample_batch(v, u, &mut m).map_err(refused)?;
         Ok(start.elapsed().as_secs_f64())
     }
 }

@@ -1,6 +1,5 @@
 //! Tables of one shape for lookups elsewhere, and albedos of dielectrics.
 
-use glam::Vec3;
 use microfacet_export::Shape;
 use microfacet_sampler::Tables;
 use microfacet_sampler::albedo::DielectricAlbedo;
@@ -59,6 +58,6 @@ impl PyDielectricAlbedo {
         let sides = [("outside", &self.0.outside), ("inside", &self.0.inside)];
         let curve = one_of("side", side, &sides)?;
         let cos = Input::new("cos_theta", cos_theta)?;
-        each(&cos, Cost::Lookup, |[cos]| curve.eval(Vec3::new(0.0, 0.0, cos)))
+        each(&cos, Cost::Lookup, |[cos]| curve.eval([0.0, 0.0, cos]))
     }
 }

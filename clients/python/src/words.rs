@@ -5,7 +5,9 @@ use std::io;
 use microfacet_baker::scene::{SceneError, SceneErrorKind};
 use microfacet_baker::store::StoreError;
 use microfacet_sampler::lobe::Roughness;
-use microfacet_sampler::{BindError, Compensation, Masking, StandIn, Transport};
+use microfacet_sampler::{
+    BindError, BsdfSettings, Compensation, Masking, StandIn, Tables, Transport,
+};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -22,11 +24,9 @@ pub(crate) fn unbound(why: BindError) -> PyErr {
         ("`StandIn::Round`", "stand_in=True"),
         ("and the sigma and theta of its Skew", "and its sigma and theta"),
         (", which compensation needs", ""),
+        ("bake a set from these lines", "give microfacet.bake a recipe with these lines"),
     ];
-    let lines = why.recipe().unwrap_or_default();
-    let start = if lines.is_empty() { "" } else { "; microfacet.bake takes a recipe with\n" };
-    let why = format!("{why}{start}{lines}");
-    refused(words.iter().fold(why, |why, (rust, python)| why.replace(rust, python)))
+    refused(words.iter().fold(why.to_string(), |why, (rust, python)| why.replace(rust, python)))
 }
 
 /// Why a scene cannot be read: errors of the operating system are OSError.
@@ -107,6 +107,19 @@ pub(crate) fn compensation(word: &str) -> PyResult<Compensation> {
         ("kulla_conty", Compensation::KullaConty),
     ];
     one_of("compensation", word, &words)
+}
+
+/// How a BSDF is made.
+pub(crate) fn settings<'a>(
+    masking_word: &str,
+    compensation_word: &str,
+    tables: &'a Tables,
+    may_stand_in: bool,
+) -> PyResult<BsdfSettings<'a>> {
+    Ok(BsdfSettings::new()
+        .with_masking(masking(masking_word)?)
+        .compensated(compensation(compensation_word)?, tables)
+        .with_stand_in(stand_in(may_stand_in)))
 }
 
 pub(crate) fn transport(word: &str) -> PyResult<Transport> {

@@ -4,7 +4,6 @@ use std::f32::consts::TAU;
 use std::hint::black_box;
 use std::time::Instant;
 
-use glam::Vec3;
 use microfacet_sampler::{Ggx, Masking, MicrofacetDistribution, Tables};
 
 use rand::rngs::StdRng;
@@ -45,19 +44,19 @@ fn ratios(lobe: &impl MicrofacetDistribution, tables: &Tables, shape: usize, gam
         times[0].push(timed(|| foreign::sample(shape, sigma, &v, &u, black_box(&mut m))));
         times[1].push(timed(|| {
             for ((v, u), m) in v.iter().zip(&u).zip(black_box(&mut m)) {
-                *m = lobe.sample_visible_normal(Vec3::from(*v), *u).into();
+                *m = lobe.sample_visible_normal(*v, *u);
             }
         }));
         times[2].push(timed(|| foreign::g1(shape, sigma, &v, black_box(&mut g1))));
         times[3].push(timed(|| {
             for (v, g1) in v.iter().zip(black_box(&mut g1)) {
-                *g1 = lobe.g1(Vec3::from(*v));
+                *g1 = lobe.g1(*v);
             }
         }));
         times[4].push(timed(|| foreign::compensation(shape, sigma, &v, &l, black_box(&mut g1))));
         times[5].push(timed(|| {
             for ((v, l), lobe) in v.iter().zip(&l).zip(black_box(&mut g1)) {
-                *lobe = albedo.compensation(Vec3::from(*v), Vec3::from(*l));
+                *lobe = albedo.compensation(*v, *l);
             }
         }));
     }
