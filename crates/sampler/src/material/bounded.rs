@@ -155,7 +155,7 @@ impl Bounded {
     }
 
     /// The normals of a view.
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, v: impl Into<[f32; 3]>) -> BoundedView<'_> {
         let v = vec3(v);
         let view = if self.lobe.slices.peeled {
