@@ -88,6 +88,8 @@
 //!   break. [`port`] may change in any release.
 
 #![cfg_attr(not(feature = "std"), no_std)]
+// What a function returns is all that it does.
+#![warn(clippy::must_use_candidate, clippy::return_self_not_must_use)]
 
 extern crate alloc;
 

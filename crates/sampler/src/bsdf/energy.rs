@@ -1,6 +1,8 @@
 //! The energy of a dielectric interface for light from either side: the shares that one bounce
 //! reflects and transmits, and the distribution of the light of further bounces.
 
+use alloc::boxed::Box;
+
 use microfacet_core::fresnel::dielectric;
 
 use super::broad::Broad;
@@ -31,7 +33,7 @@ enum OneBounce {
     /// Of a smooth interface, which loses nothing.
     Smooth,
     /// From tables.
-    Tables(DielectricAlbedo),
+    Tables(Box<DielectricAlbedo>),
     /// Of a lobe, from outside alone.
     Coat(CoatAlbedo),
 }
@@ -115,7 +117,7 @@ impl Energy {
             Compensation::KullaConty => single + crossing[0] * lost[0],
         };
         Self {
-            albedo: OneBounce::Tables(albedo),
+            albedo: OneBounce::Tables(Box::new(albedo)),
             compensation,
             eta,
             lost: lost.map(|x| x as f32),
