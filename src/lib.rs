@@ -34,7 +34,8 @@ pub use microfacet_scene::load;
 pub use microfacet_tables::Precision;
 pub use microfacet_validate as validate;
 
-/// The examples of the README, so that they keep compiling.
+/// The examples of the README and the program of the first renderer, so that they keep working.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
+#[doc = include_str!("../docs/first-renderer.md")]
 struct Readme;

@@ -7,7 +7,8 @@
 //! function, and its visible normals have no closed-form inverse; this crate reads both from
 //! tables.
 //!
-//! @@PICTURE@@
+#![doc = include_str!("picture.md")]
+//! *The seventy lines of `docs/first-renderer.md`.*
 //!
 //! Directions are unit vectors in the tangent frame, n = +z: `v` the view, `l` the light, `m` a
 //! microfacet normal. They are taken from any type that converts to three `f32` and returned as

@@ -44,7 +44,7 @@ impl Tables {
     /// The call decodes about 1 MB in well under a millisecond; keep the result. The checksum is
     /// skipped, since the bytes are part of the program.
     #[cfg(feature = "embedded")]
-    #[must_use] 
+    #[must_use]
     pub fn embedded() -> Self {
         let (provenance, tables) =
             decode(DEFAULT_SET, false).expect("the embedded tables are tested");
@@ -157,7 +157,7 @@ impl Tables {
     }
 
     /// The tables of the set.
-    #[must_use] 
+    #[must_use]
     pub fn tables(&self) -> &[Table] {
         &self.tables[..self.own]
     }
@@ -168,25 +168,25 @@ impl Tables {
     }
 
     /// The first table of a kind.
-    #[must_use] 
+    #[must_use]
     pub fn table(&self, kind: Kind) -> Option<&Table> {
         self.tables().iter().find(|table| table.kind == kind)
     }
 
     /// Where the set comes from.
-    #[must_use] 
+    #[must_use]
     pub fn provenance(&self) -> &Provenance {
         &self.provenance
     }
 
     /// Whether [`lobe`](Self::lobe) serves the shape γ; it always serves γ = 2.
-    #[must_use] 
+    #[must_use]
     pub fn covers(&self, gamma: f64) -> bool {
         gamma == 2.0 || self.tabulates(gamma)
     }
 
     /// Whether [`student_t`](Self::student_t) and [`ellipsoid`](Self::ellipsoid) serve the shape γ.
-    #[must_use] 
+    #[must_use]
     pub fn tabulates(&self, gamma: f64) -> bool {
         gamma > 1.5 && coverage::contains(&self.tables, s_of_gamma(gamma))
     }
@@ -195,7 +195,7 @@ impl Tables {
     /// max] of s = 1/(γ−1); a single shape is a range of no width.
     ///
     /// A lobe needs tables of several kinds; these are the shapes that all of them cover.
-    #[must_use] 
+    #[must_use]
     pub fn shapes(&self) -> Vec<[f64; 2]> {
         coverage::shapes(&self.tables)
     }

@@ -129,7 +129,7 @@ impl<const N: usize> ViewCurve<N> {
     }
 
     /// Cosine-weighted averages over the hemisphere of views: 1/π ∫∫ E μ dμ dφ.
-    #[must_use] 
+    #[must_use]
     pub fn average(&self) -> [f32; N] {
         self.average_of(|albedos| albedos.map(f64::from)).map(|x| x as f32)
     }

@@ -68,7 +68,7 @@ impl Albedo {
     }
 
     /// The form of masking.
-    #[must_use] 
+    #[must_use]
     pub fn masking(&self) -> Masking {
         self.masking
     }
@@ -91,26 +91,26 @@ impl Albedo {
     }
 
     /// Cosine-weighted averages of the moments over the hemisphere of views: 1/π ∫∫ · μ dμ dφ.
-    #[must_use] 
+    #[must_use]
     pub fn average_moments(&self) -> Moments {
         Moments::mirror_average().plus(self.average)
     }
 
     /// The average albedo E_avg = 1/π ∫∫ E μ dμ dφ with F = 1.
-    #[must_use] 
+    #[must_use]
     pub fn albedo_average(&self) -> f32 {
         1.0 - self.lost_average()
     }
 
     /// The average share of light lost, 1 − E_avg, with all its digits.
-    #[must_use] 
+    #[must_use]
     pub fn lost_average(&self) -> f32 {
         0.0 - self.average[0]
     }
 
     /// The averages by quadrature of the lookups, as the channels of tables: the values that a bake
     /// writes into tables of averages.
-    #[must_use] 
+    #[must_use]
     pub fn integrate(&self) -> [f32; 3] {
         less_mirror(self.curve.average(|rows, view, cos| {
             let rest = self.at(rows, view, cos);

@@ -18,13 +18,13 @@ pub struct Moments {
 
 impl Moments {
     /// The directional albedo E with F = 1: scale + bias.
-    #[must_use] 
+    #[must_use]
     pub fn total(&self) -> f32 {
         self.scale + self.bias
     }
 
     /// Albedo of Schlick's reflectance F0 + (F90 − F0)(1−μ)⁵.
-    #[must_use] 
+    #[must_use]
     pub fn schlick(&self, f0: f32, f90: f32) -> f32 {
         f0 * self.scale + f90 * self.bias
     }
@@ -32,7 +32,7 @@ impl Moments {
     /// Albedo of OpenPBR's metal: Schlick's reflectance with F90 = 1 and a tint, in [0, 1], of the
     /// reflectance at μ = 1/7 (Kutz, Hašan & Edmondson 2021,
     /// *Novel aspects of the Adobe Standard Material*, eq. 2–5); tint = 1 is Schlick's.
-    #[must_use] 
+    #[must_use]
     pub fn f82_tint(&self, f0: f32, tint: f32) -> f32 {
         self.schlick(f0, 1.0) - f82_dip(f0, tint) * self.f82
     }

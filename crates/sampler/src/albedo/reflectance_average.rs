@@ -7,13 +7,13 @@ use microfacet_core::schlick::{F82_AVERAGE, SCHLICK_AVERAGE, f82_dip};
 ///
 /// Kulla & Conty 2017, slide "average Fresnel",
 /// <https://blog.selfshadow.com/publications/s2017-shading-course/>.
-#[must_use] 
+#[must_use]
 pub fn schlick_average(f0: f32, f90: f32) -> f32 {
     f0 + (f90 - f0) * SCHLICK_AVERAGE as f32
 }
 
 /// Cosine-weighted average of OpenPBR's metal: Schlick's with F90 = 1, less the tint's dip.
-#[must_use] 
+#[must_use]
 pub fn f82_tint_average(f0: f32, tint: f32) -> f32 {
     schlick_average(f0, 1.0) - f82_dip(f0, tint) * F82_AVERAGE as f32
 }

@@ -27,7 +27,7 @@ pub struct ShapeAlbedo<'a> {
 
 impl<'a> ShapeAlbedo<'a> {
     /// Of the first table that has the shape, for every σ up to `largest`.
-    #[must_use] 
+    #[must_use]
     pub fn find(tables: &'a Tables, gamma: f64, masking: Masking, largest: f64) -> Option<Self> {
         let serves = |table: &&Table| {
             let (lobe, sigma) = (&table.subject.lobe, table.subject.lobe.roughness.x());

@@ -167,7 +167,7 @@ impl Albedo {
     /// to them, NaN to 0): cosine-weighted, which is close to the lobe of rough surfaces. Smooth
     /// surfaces lose their light at grazing, where weights become large.
     #[inline]
-    #[must_use] 
+    #[must_use]
     pub fn sample_compensation(&self, u: [f32; 2]) -> [f32; 3] {
         Broad::COSINE.sample(u).to_array()
     }
@@ -186,7 +186,7 @@ impl Albedo {
     /// Kulla & Conty 2017, with the square that counts the first bounce (Hill 2018, *A
     /// multi-faceted exploration, part 2*).
     #[inline]
-    #[must_use] 
+    #[must_use]
     pub fn multiple_bounces(&self, fresnel_average: f32) -> f32 {
         let below = 1.0 - fresnel_average * self.lost_average();
         // F_avg = 1 and E_avg = 0: infinitely many bounces that lose nothing.

@@ -33,7 +33,7 @@ const STEEPEST: f32 = 0.01;
 /// (see [`Dielectric`](crate::Dielectric)): the view and the light do not determine the facet well
 /// enough. The same for η and 1/η.
 #[inline(always)]
-#[must_use] 
+#[must_use]
 pub fn steep_cosine(eta: f32) -> f32 {
     (STEEP * (1.0 + eta) / (1.0 - eta).abs()).min(STEEPEST)
 }

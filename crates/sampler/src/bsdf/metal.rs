@@ -115,25 +115,25 @@ impl Metal {
     }
 
     /// The name in English, in lower case.
-    #[must_use] 
+    #[must_use]
     pub const fn name(self) -> &'static str {
         self.row().0
     }
 
     /// Index of refraction at 650, 550 and 450 nm: for red, green and blue.
-    #[must_use] 
+    #[must_use]
     pub const fn eta(self) -> [f64; 3] {
         self.row().1
     }
 
     /// Extinction coefficient at 650, 550 and 450 nm: for red, green and blue.
-    #[must_use] 
+    #[must_use]
     pub const fn k(self) -> [f64; 3] {
         self.row().2
     }
 
     /// The address of the publication: a DOI where it has one.
-    #[must_use] 
+    #[must_use]
     pub const fn source(self) -> &'static str {
         self.row().3
     }

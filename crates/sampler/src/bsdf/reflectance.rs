@@ -35,7 +35,7 @@ const K: [f64; 2] = [0.0, 1e6];
 
 impl<const N: usize> ConductorFresnel<N> {
     /// F = 1, as of a perfect mirror.
-    #[must_use] 
+    #[must_use]
     pub const fn mirror() -> Self {
         Self(Form::Mirror)
     }
@@ -75,7 +75,7 @@ impl<const N: usize> ConductorFresnel<N> {
 
     /// The reflectance of light at a cosine v·m, clamped to [0, 1]; each in [0, 1].
     #[inline(always)]
-    #[must_use] 
+    #[must_use]
     pub fn at(&self, cos_theta: f32) -> [f32; N] {
         let cos = unit(cos_theta);
         match &self.0 {
@@ -92,7 +92,7 @@ impl<const N: usize> ConductorFresnel<N> {
     }
 
     /// Cosine-weighted averages over the hemisphere, 2∫₀¹ F(μ) μ dμ.
-    #[must_use] 
+    #[must_use]
     pub fn average(&self) -> [f32; N] {
         match &self.0 {
             Form::Mirror => [1.0; N],

@@ -89,7 +89,7 @@ impl StudentT {
     /// Prepares the visible normals of every view for reflection.
     ///
     /// For γ < 1.8 (in the default set) only the end away from the viewer is restricted.
-    #[must_use] 
+    #[must_use]
     pub fn bounded(self) -> Bounded {
         Bounded::new(self)
     }
@@ -151,7 +151,7 @@ impl Bounded {
     }
 
     /// The lobe, for evaluation.
-    #[must_use] 
+    #[must_use]
     pub fn lobe(&self) -> &StudentT {
         &self.lobe
     }
@@ -397,7 +397,7 @@ impl BoundedView<'_> {
 
     /// Probability that an unbounded sample lies in the interval, in (0, 1]: the factor on a
     /// sample's weight.
-    #[must_use] 
+    #[must_use]
     pub fn share(&self) -> f32 {
         self.share
     }

@@ -61,7 +61,7 @@ impl Ellipsoid {
     }
 
     /// The shape γ.
-    #[must_use] 
+    #[must_use]
     pub fn gamma(&self) -> f64 {
         self.lobe.gamma()
     }

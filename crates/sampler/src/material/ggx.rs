@@ -50,7 +50,7 @@ impl Ggx {
     }
 
     /// αx and αy.
-    #[must_use] 
+    #[must_use]
     pub fn alpha(&self) -> [f32; 2] {
         [self.alpha_x, self.alpha_y]
     }

@@ -33,7 +33,7 @@ impl LobeKey {
     }
 
     /// Whether the lobe is round and of the family.
-    #[must_use] 
+    #[must_use]
     pub fn is_round(&self) -> bool {
         matches!(self, Self::Upright(lobe) if lobe.is_family())
     }

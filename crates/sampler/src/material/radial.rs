@@ -96,7 +96,7 @@ impl Radial {
     }
 
     /// The scale σ of slopes in the tables: their median.
-    #[must_use] 
+    #[must_use]
     pub fn sigma(&self) -> f32 {
         self.plane.sigma()[0]
     }

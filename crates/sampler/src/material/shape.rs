@@ -55,7 +55,7 @@ pub struct HeavyTables {
 
 impl ShapeTables {
     /// The tables of the lobe's shape; its roughness does not matter.
-    #[must_use] 
+    #[must_use]
     pub fn new(lobe: &StudentT) -> Self {
         let slices = &lobe.slices;
         let heavy = || HeavyTables {

@@ -133,13 +133,13 @@ impl StudentT {
     }
 
     /// σx and σy.
-    #[must_use] 
+    #[must_use]
     pub fn sigma(&self) -> [f32; 2] {
         [self.sigma_x, self.sigma_y]
     }
 
     /// The shape γ.
-    #[must_use] 
+    #[must_use]
     pub fn gamma(&self) -> f64 {
         self.gamma
     }
