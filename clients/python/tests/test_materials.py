@@ -62,6 +62,10 @@ def test_lobes_say_what_they_are():
             lambda: microfacet.Conductor(microfacet.StudentT((0.1, 0.3), 2), compensation="turquin"),
             ["sigma = [0.1, 0.3]", "[[material]]", "stand_in=True"],
         ),
+        (
+            lambda: microfacet.Plastic(microfacet.StudentT(1, 2), 1.5, 0.5, compensation="turquin"),
+            ["fresnel = { dielectric = 1.5 }", "microfacet.bake"],
+        ),
         (lambda: microfacet.StudentT((0.1, 0.3), 2).albedo(0.5), ["[[material]]", "stand_in=True"]),
         (lambda: microfacet.Conductor(microfacet.StudentT(0.1, 2), metal="wood"), ["wood", "gold"]),
         (lambda: microfacet.Conductor(microfacet.StudentT(0.1, 2), f0=1.5), ["f0 = 1.5", "[0, 1]"]),
@@ -145,7 +149,9 @@ def test_samples_have_the_density_and_weight_of_eval(tables):
     )
     glass = tables.bsdf("glass", "kulla-conty")
     coat = microfacet.Plastic(tables.material("glass"), 1.5, (0.8, 0.2, 0.1))
-    for bsdf in [gold, full, glass, coat, microfacet.Dielectric(microfacet.StudentT(1, 3), 1.3)]:
+    single = microfacet.Plastic(microfacet.StudentT((0.4, 0.2), 3), 1.5, 0.5)
+    rough = microfacet.Dielectric(microfacet.StudentT(1, 3), 1.3)
+    for bsdf in [gold, full, glass, coat, single, rough]:
         sample = bsdf.sample(v, choice, u)
         alive = sample.pdf > 0
         assert alive.sum() > 100 and not sample.delta.any()
