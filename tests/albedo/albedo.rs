@@ -142,7 +142,7 @@ fn a_single_material_has_its_albedo_and_no_other() {
     // Another roughness, shape or form of masking is not there, and the message says what is.
     for (sigma, gamma) in [(0.3, 3.0), (0.5, 3.0), (0.454, 2.9)] {
         let why = set.albedo(sigma, gamma, Masking::Uncorrelated).unwrap_err().to_string();
-        assert!(why.contains("hold gamma 3 with sigma 0.454"), "{why}");
+        assert!(why.contains("it holds is gamma 3 with sigma 0.454"), "{why}");
     }
     assert!(set.albedo(0.454, 3.0, Masking::HeightCorrelated).is_err());
     // The same as an image.

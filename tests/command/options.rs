@@ -221,7 +221,7 @@ fn a_furnace_runs_what_the_set_covers() {
     }
     for named in ["--gamma 3", "--sigma 0.3", "--gamma 2.7,4"] {
         let message = refused(at, &[&["furnace", "it's mine"], &words(named)[..]].concat());
-        has(&message, &["hold gamma 2.7 with sigma 0.454"]);
+        has(&message, &["it holds is gamma 2.7 with sigma 0.454"]);
     }
     let average = ok(at, &["furnace", "it's mine", "--average"]);
     has(&average, &["sigma = 0.454 |", "| 2.7 |"]);

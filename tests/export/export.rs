@@ -144,7 +144,7 @@ fn other_sets_are_exported_with_what_they_lack() {
 
     let message =
         refused(at, &["export", "c", "--gamma", "5", "--tables", "set", "--out", "other"]);
-    assert!(message.contains("gamma = 4") && message.contains("bake"), "{message}");
+    assert!(message.contains("it serves is 4;") && message.contains("bake"), "{message}");
     assert!(!at.join("other").exists());
 }
 
