@@ -5,6 +5,7 @@ use core::fmt;
 
 /// Why bytes are not a table set that this crate can use.
 #[derive(Clone, PartialEq)]
+#[non_exhaustive]
 pub enum LoadError {
     /// The bytes contradict the format: truncated, damaged, or describing something impossible.
     Invalid(String),

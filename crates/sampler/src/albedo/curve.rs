@@ -150,6 +150,7 @@ impl<const N: usize> ViewCurve<N> {
 ///
 /// The rest is shadowed, and left to further bounces.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct DielectricAlbedo {
     /// The form of masking.
     pub masking: Masking,
@@ -162,6 +163,7 @@ pub struct DielectricAlbedo {
 
 /// Directional albedo of one bounce under an exact reflectance, other than F = 1.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum FresnelAlbedo {
     /// Of a conductor: red, green and blue.
     Conductor(ViewCurve<3>),

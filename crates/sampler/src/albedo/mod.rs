@@ -16,6 +16,7 @@ mod moments;
 mod reflectance_average;
 pub(crate) mod shape;
 
+pub use crate::error::Covered;
 pub use curve::{DielectricAlbedo, FresnelAlbedo, ViewCurve};
 pub use directional::Albedo;
 pub use moments::Moments;

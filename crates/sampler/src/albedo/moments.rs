@@ -7,6 +7,7 @@ use microfacet_core::schlick::{F82_AVERAGE, SCHLICK_AVERAGE, f82_dip, f82_weight
 /// Moments of a Fresnel reflectance F(v·m) over the visible normals whose reflections leave the
 /// surface, weighted by shadowing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Moments {
     /// The moment of 1 − (1−v·m)⁵.
     pub scale: f32,

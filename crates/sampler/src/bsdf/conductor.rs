@@ -127,6 +127,13 @@ impl<L: Reflecting, const N: usize> Conductor<L, N> {
         self.mixture(returned, returned.lost(v), l, self.facets().halfway(v, l)).f_pdf(l)
     }
 
+    /// Out of line, as a sample with compensation is.
+    #[inline(never)]
+    fn sample_mirror(&self, v: Vec3) -> Option<(BsdfSample<N>, f32)> {
+        let mirror = || (BsdfSample::mirrored(v, self.fresnel.at(v.z)), 0.0);
+        are_finite(v, v).then(mirror)
+    }
+
     /// A sample, with its density if `PDF`.
     #[inline(always)]
     fn draw<const PDF: bool>(
@@ -139,8 +146,7 @@ impl<L: Reflecting, const N: usize> Conductor<L, N> {
             return None;
         }
         if self.smooth {
-            let mirror = || (BsdfSample::mirrored(v, self.fresnel.at(v.z)), 0.0);
-            return are_finite(v, v).then(mirror);
+            return self.sample_mirror(v);
         }
         if let Some(returned) = &self.returned {
             return self.sample_mixture(returned, v, choice, u);
