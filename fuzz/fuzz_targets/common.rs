@@ -56,7 +56,7 @@ fn albedos(set: &microfacet_sampler::Tables) {
                 Ok(FresnelAlbedo::Dielectric(sides)) => {
                     sides.outside.eval(v).into_iter().chain(sides.inside.eval(v)).for_each(share);
                 }
-                Err(_) => {}
+                _ => {}
             }
         }
     }

@@ -30,8 +30,9 @@ fn plan(materials: &[[&str; 4]], albedo: AlbedoWish) -> Plan {
 
 /// The albedos of a plan, for the materials that ask for them.
 fn albedos_of(materials: &[[&str; 4]]) -> Plan {
-    let plan = plan(materials, AlbedoWish::Auto);
-    Plan { shapes: Vec::new(), distributions: Vec::new(), ..plan }
+    let mut plan = plan(materials, AlbedoWish::Auto);
+    (plan.shapes, plan.distributions) = Default::default();
+    plan
 }
 
 /// The largest error that certificates of a set state.

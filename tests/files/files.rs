@@ -9,7 +9,7 @@ use microfacet_baker::progress::Stage;
 use microfacet_baker::store::{decode_exr, encode_exr};
 use microfacet_baker::table_spec::{ShapeAxis, TableSpec};
 use microfacet_sampler::Tables;
-use microfacet_tables::{Kind, LoadError, Precision, Table};
+use microfacet_tables::{Kind, LoadError, Precision};
 
 fn small_table(precision: Precision) -> Tables {
     let spec = TableSpec {
@@ -138,7 +138,8 @@ fn an_image_written_anew_by_another_program_is_refused() {
 fn parts_that_are_exchanged_renamed_or_missing_are_refused() {
     let set = small_table(Precision::F32);
     let table = |name: &str, change: f32| {
-        let mut table = Table { name: name.into(), ..set.tables()[0].clone() };
+        let mut table = set.tables()[0].clone();
+        table.name = name.into();
         table.values.iter_mut().for_each(|x| *x *= change);
         table
     };

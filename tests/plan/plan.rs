@@ -38,7 +38,9 @@ fn bake(plan: &Plan, target: Target, cache: &Cache) -> Result<Baked, BakeError> 
 
 /// The plan without its albedos, which take long.
 fn normals_of(plan: &Plan) -> Plan {
-    Plan { albedos: Vec::new(), ..plan.clone() }
+    let mut plan = plan.clone();
+    plan.albedos.clear();
+    plan
 }
 
 fn bytes(set: &Tables) -> Vec<u8> {

@@ -272,7 +272,8 @@ proptest! {
         for (i, material) in materials.iter_mut().enumerate() {
             material.name.push_str(&i.to_string());
         }
-        let scene = Scene { materials, ..Scene::default() };
+        let mut scene = Scene::default();
+        scene.materials = materials;
         let recipe = scene.to_recipe();
         let again = Scene::from_recipe_str(&recipe).unwrap();
         prop_assert_eq!(again.materials.len(), scene.materials.len());

@@ -3,7 +3,7 @@
 use microfacet_core::Masking;
 use microfacet_sampler::port::{ShapeTables, tables_of_shape};
 use microfacet_sampler::{MaterialError, Tables};
-use microfacet_tables::Quantity;
+use microfacet_tables::{Quantity, SIGMA_MAX};
 
 use super::albedo::AlbedoTable;
 
@@ -61,8 +61,7 @@ impl Shape {
         };
         let [a, b] = Masking::ALL.map(&mut albedo);
         // Missing of a shape outside the default set alone, in a set without albedos.
-        let missing =
-            MaterialError::AlbedoNotCovered { sigma: f64::INFINITY, gamma, nearest: None };
+        let missing = MaterialError::AlbedoNotCovered { sigma: SIGMA_MAX, gamma, nearest: None };
         let [a, b] = [a, b].map(|found| found.ok_or(missing));
         let provenance = tables.provenance();
         Ok(Self {

@@ -83,8 +83,9 @@ fn a_library_does_not_swell_the_page() {
     let few = set();
     let number = 2000;
     let table = |i: usize| -> Table {
-        let table = &few.tables()[i % few.tables().len()];
-        Table { name: format!("{}_{i}", table.name), ..table.clone() }
+        let mut table = few.tables()[i % few.tables().len()].clone();
+        table.name += &format!("_{i}");
+        table
     };
     let entry = |i: usize| -> MaterialEntry {
         let [entry, _] = &few.provenance().materials[..] else { panic!("two materials") };

@@ -22,20 +22,13 @@ fn axis(name: &str, mapping: Mapping, interpolation: Interpolation, nodes: &[f64
 
 fn table(kind: Kind, precision: Precision, mut axes: Vec<Axis>, values: &[f32]) -> Table {
     axes.insert(0, axis("gamma", Mapping::InverseShape, Interpolation::Nodes, &[1.0]));
-    let table = Table {
-        name: kind.name().into(),
-        kind,
-        axes,
-        channels: vec!["value".into(), "slope".into()],
-        values: values.to_vec(),
-        precision,
-        subject: Subject::shapes([1.0, 1.0]),
-        certificate: Certificate {
-            errors: [(Quantity::G1, Errors { largest: 0.5, ..Errors::default() })].into(),
-            ..Certificate::default()
-        },
+    let certificate = Certificate {
+        errors: [(Quantity::G1, Errors { largest: 0.5, ..Errors::default() })].into(),
+        ..Certificate::default()
     };
-    table.rounded(precision)
+    Table::new(kind.name(), kind, Subject::shapes([1.0, 1.0]), axes, values.to_vec())
+        .with_certificate(certificate)
+        .rounded(precision)
 }
 
 /// The smallest set that serves GGX, with each way of storing values.
@@ -204,7 +197,8 @@ fn an_albedo_of_what_cannot_be_is_refused() {
     let refused = |lobe: LobeSpec, reflectance: Reflectance, part: &str| {
         let (masking, reflectance) = (Some(Masking::Uncorrelated), Some(reflectance));
         let subject = Subject { lobe, masking, reflectance };
-        let table = Table { kind: Kind::Albedo, subject, ..small_tables().remove(0) };
+        let mut table = small_tables().remove(0);
+        (table.kind, table.subject) = (Kind::Albedo, subject);
         let why = table.validate().unwrap_err().to_string();
         assert!(why.contains(part), "{why}");
     };

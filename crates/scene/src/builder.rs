@@ -94,8 +94,9 @@ impl Builder {
     }
 
     /// The scene, with the files that it includes.
-    pub(super) fn finish(self, included: Vec<PathBuf>) -> Scene {
-        Scene { included, ..self.scene }
+    pub(super) fn finish(mut self, included: Vec<PathBuf>) -> Scene {
+        self.scene.included = included;
+        self.scene
     }
 
     pub(super) fn add(&mut self, name: &str, place: &Place, used: bool, lobe: Lobe) -> Result<()> {

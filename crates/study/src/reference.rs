@@ -126,7 +126,7 @@ fn read_albedo(tables: &Tables, sigma: f64, row: &Row) -> [f32; 7] {
     let (gamma, masking) = (row.gamma, row.masking);
     let albedo = tables.albedo(sigma, gamma, masking).expect("embedded tables cover it");
     let average = tables.average_moments(sigma, gamma, masking).expect("embedded tables cover it");
-    let Moments { scale, bias, f82 } = albedo.moments(row.v);
+    let Moments { scale, bias, f82, .. } = albedo.moments(row.v);
     let e = albedo.albedo(row.v);
     [e, scale, bias, f82, average.total(), average.bias, average.f82]
 }

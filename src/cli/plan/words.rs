@@ -118,7 +118,8 @@ fn offer(
     // Albedos that no table can hold are refused when they are requested.
     let specs = plan.offered.iter().map(|need| need.spec(quality, precision));
     let tables = specs.map(|spec| spec.map(|spec| spec.tables())).sum::<Result<_, _>>().ok()?;
-    let with = Plan { albedos: plan.offered.clone(), ..plan.clone() };
+    let mut with = plan.clone();
+    with.albedos.clone_from(&plan.offered);
     let Cost { bytes, seconds } = costs(&with, quality, precision).ok()?.into_iter().sum();
     let bytes = bytes.saturating_sub(without.bytes);
     let seconds = (seconds - without.seconds).max(0.0);

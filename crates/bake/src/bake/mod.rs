@@ -36,17 +36,8 @@ pub fn bake(spec: &TableSpec, stage: &Stage) -> Table {
         Kind::VisibleSlopeConditional => conditional::bake(spec, &axes, stage),
         _ => unreachable!("kinds are listed in `axes`, which comes first"),
     };
-    let table = Table {
-        name: spec.name.clone(),
-        kind: spec.kind,
-        axes,
-        subject: Subject::shapes(spec.covers),
-        channels: names(Kind::VALUE_AND_SLOPE),
-        values,
-        precision: spec.precision,
-        certificate: Default::default(),
-    };
-    table.rounded(spec.precision)
+    Table::new(&spec.name, spec.kind, Subject::shapes(spec.covers), axes, values)
+        .rounded(spec.precision)
 }
 
 /// The axes of a table, from its specification.

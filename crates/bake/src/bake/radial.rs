@@ -13,7 +13,7 @@ use microfacet_tables::{Axis, Kind, LobeSpec, Mapping, Precision, Subject, Table
 use rayon::prelude::*;
 
 use super::shadowing::ratios;
-use super::{across, along, mirrored, names, round};
+use super::{across, along, mirrored, round};
 use crate::progress::Stage;
 use crate::table_spec::Level;
 
@@ -90,17 +90,8 @@ pub fn bake_radial(
             (_, [slopes, ..]) => density(marginal, &slopes.nodes),
             (_, []) => unreachable!("every kind has an axis"),
         };
-        let table = Table {
-            name: subject.name(kind),
-            kind,
-            subject: subject.clone(),
-            axes,
-            channels: names(Kind::VALUE_AND_SLOPE),
-            values: values.into_iter().flatten().collect(),
-            precision,
-            certificate: Default::default(),
-        };
-        table.rounded(precision)
+        let values = values.into_iter().flatten().collect();
+        Table::new(subject.name(kind), kind, subject.clone(), axes, values).rounded(precision)
     };
     let all = radial_axes(level.into(), kappa, marginal.reach());
     stage.split(all.iter().filter(|(_, axes)| axes.len() > 1).map(|(_, axes)| axes[0].len()).sum());

@@ -126,7 +126,7 @@ pub fn certified(
         };
         let certificate =
             Certificate { quadrature: table.certificate.quadrature.map(round_up), ..found };
-        Ok(Table { certificate, ..table })
+        Ok(table.with_certificate(certificate))
     };
     tables.into_iter().map(certified).collect()
 }

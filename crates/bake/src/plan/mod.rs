@@ -90,6 +90,7 @@ impl Verdict {
 
 /// The tables to bake for a scene, with a verdict for each material.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Plan {
     /// Disjoint required shapes, from Beckmann to heavy tails: the ranges first, then the single
     /// shapes.

@@ -21,6 +21,7 @@ pub use names::Names;
 
 /// The microfacet lobes of a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Scene {
     /// The microfacet lobes, in the order of their definition; names are unique.
     pub materials: Vec<Material>,

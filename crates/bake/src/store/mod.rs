@@ -257,7 +257,8 @@ mod tests {
     fn a_table_names_no_file_in_another_folder() {
         let set = Tables::embedded();
         let named = |name: &str| {
-            let table = Table { name: name.into(), ..set.tables()[0].clone() };
+            let mut table = set.tables()[0].clone();
+            table.name = name.into();
             Tables::from_tables(set.provenance().clone(), vec![table]).unwrap()
         };
         for name in ["../up", "/root", "", ".hidden", "two\nlines"] {

@@ -82,9 +82,11 @@ pub struct BsdfSample<const N: usize = 3> {
 }
 
 impl<const N: usize> BsdfSample<N> {
+    /// A light that is reflected, and no delta, for a BSDF of your own; another event sets its
+    /// fields.
     #[inline(always)]
-    fn reflected(l: Vec3, weight: [f32; N]) -> Self {
-        Self { l: l.to_array(), weight, event: Event::Reflection, delta: false, eta: 1.0 }
+    pub fn reflected(l: impl Into<[f32; 3]>, weight: [f32; N]) -> Self {
+        Self { l: l.into(), weight, event: Event::Reflection, delta: false, eta: 1.0 }
     }
 
     /// The mirror reflection of a view from above, a delta event.

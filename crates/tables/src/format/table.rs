@@ -1,7 +1,7 @@
 //! The table in memory: axes, channels and values, with a certificate of the errors measured on it.
 
 use alloc::format;
-use alloc::string::String;
+use alloc::string::{String, ToString};
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -20,6 +20,7 @@ use crate::interval::Interval;
 /// `values` is row-major with the axes slowest first and the channels fastest: shape
 /// `[axes[0].len(), …, axes[n−1].len(), channels.len()]`.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Table {
     /// Name inside its set, for messages; readers find tables by `kind` and `subject`.
     pub name: String,
@@ -40,6 +41,33 @@ pub struct Table {
 }
 
 impl Table {
+    /// A table of the channels that its kind has, in single precision and without a certificate.
+    pub fn new(
+        name: impl Into<String>,
+        kind: Kind,
+        subject: Subject,
+        axes: Vec<Axis>,
+        values: Vec<f32>,
+    ) -> Self {
+        let channels = kind.layout(&subject).channels.iter().map(ToString::to_string).collect();
+        Self {
+            name: name.into(),
+            kind,
+            subject,
+            axes,
+            channels,
+            values,
+            precision: Precision::F32,
+            certificate: Certificate::default(),
+        }
+    }
+
+    /// The table with the errors that were measured on it.
+    #[must_use]
+    pub fn with_certificate(self, certificate: Certificate) -> Self {
+        Self { certificate, ..self }
+    }
+
     /// Lengths along the axes, then the number of channels.
     pub fn shape(&self) -> Vec<usize> {
         self.axes.iter().map(Axis::len).chain([self.channels.len()]).collect()

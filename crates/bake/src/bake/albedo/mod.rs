@@ -262,20 +262,14 @@ fn tables(spec: &AlbedoSpec, nodes: &[Node], masking: Masking) -> Result<Vec<Tab
     let values = |node: &Node| {
         node.values.of(masking)[..channels].iter().copied().chain(node.clamp).collect::<Vec<f64>>()
     };
-    let directional = Table {
-        name: spec.name(Kind::Albedo, masking),
-        kind: Kind::Albedo,
-        subject: spec.subject(masking),
-        axes: spec.axes.clone(),
-        channels: spec.channels(),
-        values: nodes.iter().flat_map(values).map(|x| x as f32).collect(),
-        precision: Precision::F32,
-        certificate: Certificate {
+    let (name, subject) = (spec.name(Kind::Albedo, masking), spec.subject(masking));
+    let values = nodes.iter().flat_map(values).map(|x| x as f32).collect();
+    let directional = Table::new(name, Kind::Albedo, subject, spec.axes.clone(), values)
+        .with_certificate(Certificate {
             quadrature: Some(nodes.iter().map(|node| node.values.error).fold(0.0, f64::max)),
             ..Certificate::default()
-        },
-    }
-    .rounded(spec.precision);
+        })
+        .rounded(spec.precision);
     let average = spec.has_averages().then(|| average(spec, &directional, masking)).transpose()?;
     Ok([directional].into_iter().chain(average).collect())
 }
@@ -292,14 +286,7 @@ fn average(spec: &AlbedoSpec, directional: &Table, masking: Masking) -> Result<T
         Ok(TabulatedAlbedo::from_table(&whole, sigma, gamma)?.integrate())
     };
     let pairs = gammas.iter().flat_map(|&gamma| sigmas.iter().map(move |&sigma| (gamma, sigma)));
-    let values = pairs.map(at).collect::<Result<Vec<_>, MaterialError>>()?;
-    Ok(Table {
-        name: spec.name(Kind::AlbedoAverage, masking),
-        kind: Kind::AlbedoAverage,
-        axes,
-        values: values.concat(),
-        precision: Precision::F32,
-        certificate: Default::default(),
-        ..directional.clone()
-    })
+    let values = pairs.map(at).collect::<Result<Vec<_>, MaterialError>>()?.concat();
+    let (name, kind) = (spec.name(Kind::AlbedoAverage, masking), Kind::AlbedoAverage);
+    Ok(Table::new(name, kind, directional.subject.clone(), axes, values))
 }

@@ -118,7 +118,7 @@ impl TableGroup {
             let measured = set.tables()[..full.len()].iter().zip(&specs).map(|(table, spec)| {
                 let stage = stage(normals_work(spec)[1]);
                 let certificate = measure(&set, table, need.certified_s(), &stage)?;
-                Ok(Table { certificate, ..table.clone() })
+                Ok(table.clone().with_certificate(certificate))
             });
             measured.collect()
         };

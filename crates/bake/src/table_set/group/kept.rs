@@ -35,7 +35,7 @@ fn all<T>(tables: &[Table], asked: &[T], is: impl Fn(&Table, &T) -> bool) -> boo
 
 /// Whether a table of visible normals is that of a specification.
 pub(super) fn is_of(table: &Table, spec: &TableSpec) -> bool {
-    let Table { name, kind, subject, axes, channels, precision, values: _, certificate: _ } = table;
+    let Table { name, kind, subject, axes, channels, precision, .. } = table;
     let asked = (&spec.name, spec.kind, Subject::shapes(spec.covers), spec.precision);
     (name, *kind, subject.clone(), *precision) == asked
         && *axes == bake::axes(spec)
