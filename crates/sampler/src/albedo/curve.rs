@@ -90,8 +90,8 @@ impl<const N: usize> ViewCurve<N> {
     /// Where the table has fewer than N channels, the last albedos are 0.
     ///
     /// # Errors
-    /// [`MaterialError::OtherTable`] if the table has more channels, holds moments, or does not cover
-    /// the material.
+    /// [`MaterialError::OtherTable`] if the table has more channels, holds moments, or does not
+    /// cover the material.
     pub fn from_table(
         table: &Table,
         sigma: f64,

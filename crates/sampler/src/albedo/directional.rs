@@ -52,7 +52,8 @@ impl Albedo {
     /// ignores σ and γ.
     ///
     /// # Errors
-    /// [`MaterialError::OtherTable`] for a table that holds no moments or does not cover the material.
+    /// [`MaterialError::OtherTable`] for a table that holds no moments or does not cover the
+    /// material.
     pub fn from_table(table: &Table, sigma: f64, gamma: f64) -> Result<Self, MaterialError> {
         let point = MaterialPoint { sigma, gamma, eta: f64::NAN };
         let moments = table.subject.reflectance == Some(Reflectance::Mirror);

@@ -1,5 +1,5 @@
-//! The albedo of a rough interface of one bounce, by quadrature over the facets that its lobe draws:
-//! what a coat needs where no table is read.
+//! The albedo of a rough interface of one bounce, by quadrature over the facets that its lobe
+//! draws: what a coat needs where no table is read.
 //!
 //! Shares of light err by at most 1e-3, and by 6e-3 for η < 1, whose coats reflect all light beyond
 //! a critical angle (test `shares_are_those_of_the_model`).
