@@ -17,6 +17,14 @@ fn g1_of_nan<T: Default>() -> T {
     T::default()
 }
 
+/// z where it is above 0, and 0 elsewhere, for −0 and NaN as well: G1 = −0 would make Λ −∞.
+#[inline(always)]
+fn above_zero(z: f32x4) -> f32x4 {
+    // Of such a pair the maximum of SSE is the second number, that of other machines may be the
+    // first.
+    if cfg!(target_feature = "sse2") { z.fast_max(f32x4::ZERO) } else { z & z.simd_gt(0.0) }
+}
+
 impl StudentT {
     #[inline(always)]
     pub(crate) fn g1_of_one(&self, v: Vec3) -> f32 {
@@ -30,7 +38,7 @@ impl StudentT {
         let [kx, ky] = self.kappa_sigma;
         let xy = f32x4::new([v.x, v.y, 0.0, 0.0]) * f32x4::new([kx, ky, 0.0, 0.0]);
         let squares = xy * xy;
-        let z = f32x4::new([v.z, 0.0, 0.0, 0.0]).fast_max(f32x4::ZERO);
+        let z = above_zero(f32x4::new([v.z, 0.0, 0.0, 0.0]));
         let across = (squares + swap_pairs(squares)).sqrt();
         let [q, at] = slices.shadowing_view.of_views(across, z, slices.shadowing_cells);
         let (cell, w) = split(at);
@@ -56,7 +64,7 @@ impl StudentT {
         let [kx, ky] = self.kappa_sigma;
         let xy = f32x4::new([v.x, l.x, v.y, l.y]) * f32x4::new([kx, kx, ky, ky]);
         let squares = xy * xy;
-        let z = f32x4::new([v.z, l.z, v.z, l.z]).fast_max(f32x4::ZERO);
+        let z = above_zero(f32x4::new([v.z, l.z, v.z, l.z]));
         let across = (squares + swap_halves(squares)).sqrt();
         let [q, at] = slices.shadowing_view.of_views(across, z, slices.shadowing_cells);
         let (cell, w) = split(at);
@@ -69,11 +77,12 @@ impl StudentT {
         let (low, high) = (a.unpack_lo(b), a.unpack_hi(b));
         let ([wa, wb, ..], square) = (w.to_array(), w * w);
         let terms = (low + square * high) * f32x4::new([1.0, 1.0, wa, wb]);
-        let [g1_v, g1_l, ..] = (q * (terms + swap_halves(terms))).fast_min(f32x4::ONE).to_array();
-        // Where the cast saturates NaN reads cell 0.
-        if cfg!(not(target_feature = "sse2")) && (g1_v.is_nan() || g1_l.is_nan()) {
+        let g1 = q * (terms + swap_halves(terms));
+        // Where the cast saturates NaN reads cell 0, and the minimum may be 1.
+        if cfg!(not(target_feature = "sse2")) && g1.is_nan().any() {
             return g1_of_nan();
         }
+        let [g1_v, g1_l, ..] = g1.fast_min(f32x4::ONE).to_array();
         [g1_v, g1_l]
     }
 
@@ -95,7 +104,7 @@ impl StudentT {
         let [wx, wy, wz] = transpose(w);
         let [kx, ky] = self.kappa_sigma;
         let (x, y) = (wx * kx, wy * ky);
-        let z = wz.fast_max(f32x4::ZERO);
+        let z = above_zero(wz);
         let across = (x * x + y * y).sqrt();
         let [q, at] = slices.shadowing_view.of_views(across, z, slices.shadowing_cells);
         let (cell, w) = split(at);
