@@ -43,7 +43,7 @@ pub use rational::Rational;
 pub use refractive_index::ReflectanceRoot;
 pub use view_blend::{PreparedView, ViewBlend};
 
-pub use random_number::roots;
+pub use random_number::{above_zero, roots};
 
 use coordinate::Coordinate;
 

@@ -49,10 +49,18 @@ impl MirroredRoot {
     }
 }
 
-/// min(u, 1−u)^¼ of four random numbers: t/⁴√2; 0 outside [0, 1], and NaN or 0 for NaN.
+/// The numbers above 0, and 0 in place of others, of −0 and NaN as well.
+#[inline(always)]
+pub fn above_zero(x: f32x4) -> f32x4 {
+    // Of such a pair the maximum of SSE is the second number, that of other machines may be the
+    // first.
+    if cfg!(target_feature = "sse2") { x.fast_max(f32x4::ZERO) } else { x & x.simd_gt(0.0) }
+}
+
+/// min(u, 1−u)^¼ of four random numbers: t/⁴√2; 0 outside [0, 1] and for NaN.
 #[inline(always)]
 pub fn roots(u: f32x4) -> f32x4 {
-    u.fast_min(1.0 - u).fast_max(f32x4::ZERO).sqrt().sqrt()
+    above_zero(u.fast_min(1.0 - u)).sqrt().sqrt()
 }
 
 impl Coordinate for MirroredRoot {

@@ -4,6 +4,7 @@
 use glam::Vec3;
 use wide::f32x4;
 
+use microfacet_tables::axis::above_zero;
 use microfacet_tables::axis::hermite::{horner, horner_lanes, split};
 
 use super::four::{LANES, coefficients, transpose};
@@ -15,14 +16,6 @@ use crate::vector::vec3;
 #[cold]
 fn g1_of_nan<T: Default>() -> T {
     T::default()
-}
-
-/// z where it is above 0, and 0 elsewhere, for −0 and NaN as well: G1 = −0 would make Λ −∞.
-#[inline(always)]
-fn above_zero(z: f32x4) -> f32x4 {
-    // Of such a pair the maximum of SSE is the second number, that of other machines may be the
-    // first.
-    if cfg!(target_feature = "sse2") { z.fast_max(f32x4::ZERO) } else { z & z.simd_gt(0.0) }
 }
 
 impl StudentT {
@@ -38,6 +31,7 @@ impl StudentT {
         let [kx, ky] = self.kappa_sigma;
         let xy = f32x4::new([v.x, v.y, 0.0, 0.0]) * f32x4::new([kx, ky, 0.0, 0.0]);
         let squares = xy * xy;
+        // G1 = −0 would make Λ −∞.
         let z = above_zero(f32x4::new([v.z, 0.0, 0.0, 0.0]));
         let across = (squares + swap_pairs(squares)).sqrt();
         let [q, at] = slices.shadowing_view.of_views(across, z, slices.shadowing_cells);
