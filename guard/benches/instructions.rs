@@ -35,16 +35,16 @@ fn sum(normals: impl Iterator<Item = [f32; 3]>) -> Vec3 {
 // from its closed form.
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(178.6))]
-#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(305.4))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(190.6))]
+#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(324.4))]
 fn sample_visible_normal(inputs: Inputs<StudentT>) -> (Vec3, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (sum(calls.map(|(v, u)| inputs.lobe.sample_visible_normal(*v, *u))), inputs)
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(182.4))]
-#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(228.1))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(178.9))]
+#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(222.2))]
 fn sample_batch(mut inputs: Inputs<StudentT>) -> Inputs<StudentT> {
     inputs.lobe.sample_batch(&inputs.v, &inputs.u, &mut inputs.m).expect("equal lengths");
     black_box(inputs)
@@ -71,22 +71,22 @@ fn d(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(160.1))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(162.1))]
 fn visible_normal_pdf(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.m);
     (black_box(calls.map(|(v, m)| black_box(inputs.lobe.visible_normal_pdf(*v, *m))).sum()), inputs)
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(883.5))]
-#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(1059.5))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(959.3))]
+#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(1130.3))]
 fn table_pdf(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.m);
     (black_box(calls.map(|(v, m)| black_box(inputs.lobe.table_pdf(*v, *m))).sum()), inputs)
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::bounded, config = at_most(311.6))]
+#[bench::common(args = (2.5), setup = Inputs::bounded, config = at_most(325.6))]
 fn bounded(inputs: Inputs<Bounded>) -> (Vec3, Inputs<Bounded>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (sum(calls.map(|(v, u)| inputs.lobe.at(*v).sample(*u))), inputs)
@@ -101,13 +101,13 @@ fn bounded_batch(mut inputs: Inputs<Bounded>) -> Inputs<Bounded> {
 }
 
 #[library_benchmark]
-#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(189.1))]
+#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(192.1))]
 fn ellipsoid_g1(inputs: Inputs<Ellipsoid>) -> (f32, Inputs<Ellipsoid>) {
     (black_box(inputs.v.iter().map(|v| black_box(inputs.lobe.g1(*v))).sum()), inputs)
 }
 
 #[library_benchmark]
-#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(696.0))]
+#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(710.0))]
 fn ellipsoid_sample_visible_normal(inputs: Inputs<Ellipsoid>) -> (Vec3, Inputs<Ellipsoid>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (sum(calls.map(|(v, u)| inputs.lobe.sample_visible_normal(*v, *u))), inputs)
@@ -125,7 +125,7 @@ fn ggx_g1(inputs: Inputs<Ggx>) -> (f32, Inputs<Ggx>) {
 }
 
 #[library_benchmark]
-#[bench::closed_form(setup = closed_form, config = at_most(135.1))]
+#[bench::closed_form(setup = closed_form, config = at_most(141.1))]
 fn ggx_sample_visible_normal(inputs: Inputs<Ggx>) -> (Vec3, Inputs<Ggx>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (sum(calls.map(|(v, u)| inputs.lobe.sample_visible_normal(*v, *u))), inputs)
@@ -137,8 +137,8 @@ fn ggx_sample_visible_normal(inputs: Inputs<Ggx>) -> (Vec3, Inputs<Ggx>) {
 type Conductors = (Conductor<StudentT>, Inputs<StudentT>);
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(413.7))]
-#[bench::heavy(args = (1.6), setup = microfacet_guard::conductor, config = at_most(489.3))]
+#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(358.1))]
+#[bench::heavy(args = (1.6), setup = microfacet_guard::conductor, config = at_most(462.6))]
 fn conductor_sample((conductor, inputs): Conductors) -> (f32, Conductors) {
     let calls = inputs.v.iter().zip(&inputs.u);
     let one = |(v, u): (&Vec3, &[f32; 2])| {
@@ -149,8 +149,8 @@ fn conductor_sample((conductor, inputs): Conductors) -> (f32, Conductors) {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(413.7))]
-#[bench::heavy(args = (1.6), setup = microfacet_guard::conductor, config = at_most(489.3))]
+#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(429.1))]
+#[bench::heavy(args = (1.6), setup = microfacet_guard::conductor, config = at_most(508.5))]
 fn conductor_sample_with_pdf((conductor, inputs): Conductors) -> (f32, Conductors) {
     let calls = inputs.v.iter().zip(&inputs.u);
     let one = |(v, u): (&Vec3, &[f32; 2])| {
@@ -161,7 +161,7 @@ fn conductor_sample_with_pdf((conductor, inputs): Conductors) -> (f32, Conductor
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(251.0))]
+#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(248.0))]
 fn conductor_eval_pdf((conductor, inputs): Conductors) -> (f32, Conductors) {
     let calls = inputs.v.iter().zip(inputs.v.iter().rev());
     let one = |(v, l): (&Vec3, &Vec3)| black_box(conductor.eval_pdf(*v, *l, Transport::Radiance)).1;

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use glam::Vec3;
 
-use microfacet_sampler::lobe::{Batch, Bounded, Tabulated};
+use microfacet_sampler::lobe::{Batch, Bounded, Reflecting, Tabulated};
 use microfacet_sampler::{Masking, MicrofacetDistribution};
 
 /// The arguments of one call.
@@ -70,7 +70,7 @@ fn each<L, R>(
 }
 
 /// The functions of every lobe.
-pub(super) fn common<L: Batch + Tabulated + 'static>() -> Vec<Function<L>> {
+pub(super) fn common<L: Batch + Reflecting + Tabulated + 'static>() -> Vec<Function<L>> {
     const G2: Masking = Masking::HeightCorrelated;
     vec![
         each("d", true, |lobe: &L, at| lobe.d(at.m)),
@@ -81,6 +81,8 @@ pub(super) fn common<L: Batch + Tabulated + 'static>() -> Vec<Function<L>> {
         each("sample_visible_normal", true, |lobe: &L, at| lobe.sample_visible_normal(at.v, at.u)),
         each("sample_with_pdf", true, |lobe: &L, at| lobe.sample_with_pdf(at.v, at.u)),
         each("visible_normal_pdf", true, |lobe: &L, at| lobe.visible_normal_pdf(at.v, at.m)),
+        each("sample_reflected", true, |lobe: &L, at| lobe.sample_reflected(at.v, at.u, G2)),
+        each("eval_pdf", true, |lobe: &L, at| lobe.eval_pdf(at.v, at.l, G2)),
         each("table_pdf", true, |lobe: &L, at| lobe.table_pdf(at.v, at.m)),
         Function {
             name: "sample_batch",

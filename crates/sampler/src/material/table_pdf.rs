@@ -154,12 +154,20 @@ impl StudentT {
         // The heavy part extends beyond the end of a peeled table.
         let is_end = place.is_end && (half == 0 || heavy == 0.0);
         if is_end || place_across.is_end || density == 0.0 {
-            // Towards the horizon the analytic density may grow without limit, and its quotient by
-            // the table's density would too; rounding of a normal that is tilted mostly across may
-            // lose its slope along the view.
-            return density.max(self.visible_normal_pdf(v, m));
+            return self.at_an_end(density, v, m);
         }
         density
+    }
+
+    /// A density where the table ends: not below the analytic one.
+    ///
+    /// Towards the horizon that may grow without limit, and its quotient by the table's density
+    /// would too; rounding of a normal that is tilted mostly across may lose its slope along the
+    /// view.
+    #[cold]
+    #[inline(never)]
+    fn at_an_end(&self, density: f32, v: Vec3, m: Vec3) -> f32 {
+        density.max(self.visible_normal_pdf(v, m))
     }
 
     /// The slopes at which the tabulated density ([`table_pdf`](crate::lobe::Tabulated::table_pdf))
