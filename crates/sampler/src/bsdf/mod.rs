@@ -141,7 +141,7 @@ pub trait Bsdf<const N: usize = 3> {
     /// The light and weight of [`sample_with_pdf`](Self::sample_with_pdf), without the density,
     /// which [`pdf`](Self::pdf) computes later for paths that need it.
     ///
-    /// Without compensation this leaves out D, a tenth to a fifth of the instructions.
+    /// Without compensation this leaves out D, 9 to 17 % of the instructions (`guard/`).
     #[inline]
     fn sample(
         &self,
