@@ -12,7 +12,7 @@ pub(crate) fn table(rows: &[Row]) -> String {
         (Quantity::Normal, "visible normals"),
         (Quantity::G1, "G1"),
         (Quantity::D, "D"),
-        (Quantity::Conductor, "conductor, sample and eval_pdf"),
+        (Quantity::Conductor, "conductor, sample_with_pdf and eval_pdf"),
     ] {
         text += &format!(
             "\n{title:42} {:>5} {:>9} {:>8} {:>8} {:>9} {:>9}",

@@ -23,7 +23,7 @@ fn from_a_recipe_to_normals() {
     assert_eq!((glass.sigma(), glass.gamma()), ([0.454, 0.454], 3.0));
     let certificate = &set.table(Kind::VisibleSlope).unwrap().certificate;
     assert!(certificate.error(Quantity::Cdf).unwrap() < 1e-4);
-    has(&set.student_t(0.3, 4.0).unwrap_err().to_string(), &["it serves is 3"]);
+    has(&set.student_t(0.3, 4.0).unwrap_err().to_string(), &["that this set serves is 3"]);
 
     has(&desk.ok("inspect out"), &["gamma 3", "CC0-1.0", "glass"]);
     assert_eq!(desk.json("inspect out")["format"], "microfacet-tables");
