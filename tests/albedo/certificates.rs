@@ -80,8 +80,8 @@ fn across_error(table: &Table, lobe: &StudentT, shape: &Shape) -> f64 {
     let beside = [(Vec3::Z, 0.0), (Vec3::X, 1.0), (Vec3::new(0.6, 0.0, 0.8), 0.5)];
     let errors = numbers(&table.axes[1]).into_iter().flat_map(|u| {
         beside.map(|(v, u1)| {
-            let m = Vec3::from(lobe.sample_visible_normal(v, [u1, u])).as_dvec3();
-            let t = m.y / (m.z * m.z + shape.s() * m.x * m.x).sqrt();
+            let [x, y, z] = lobe.sample_visible_normal(v, [u1, u]).map(f64::from);
+            let t = y / (z * z + shape.s() * x * x).sqrt();
             (across_cdf(shape, signed(shape, t)) - f64::from(u)).abs()
         })
     });
@@ -96,8 +96,8 @@ fn along_error(table: &Table, lobe: &StudentT, shape: &Shape) -> f64 {
         let exact =
             VisibleSlope::new(shape, UnitView::from_cotangent(f64::from(v.z) / f64::from(v.x)));
         let errors = numbers.iter().map(|&u| {
-            let m = Vec3::from(lobe.sample_visible_normal(v, [u, 0.5])).as_dvec3();
-            (exact.cdf(signed(shape, m.x / m.z)) - f64::from(u)).abs()
+            let [x, _, z] = lobe.sample_visible_normal(v, [u, 0.5]).map(f64::from);
+            (exact.cdf(signed(shape, x / z)) - f64::from(u)).abs()
         });
         errors.fold(0.0, f64::max)
     });

@@ -48,7 +48,6 @@ fn a_name_gives_the_lobe_that_the_recipe_states() {
 fn the_laws_hold_for_every_lobe() {
     for name in ["glass", "steel", "brushed", "paint"] {
         let lobe = SET.material(name).unwrap();
-
         for v in directions() {
             let g1 = lobe.g1(v);
             assert!((0.0..=1.0).contains(&g1) && (g1 > 0.0) == (v.z > 0.0), "{name} {v}: {g1}");

@@ -183,7 +183,7 @@ fn apart(a: [f32; 3], b: [f32; 3]) -> f64 {
     if apart.iter().any(|x| x.is_nan()) { f64::INFINITY } else { most }
 }
 
-fn in_order(Moments { scale, bias, f82 }: Moments) -> [f32; 3] {
+fn in_order(Moments { scale, bias, f82, .. }: Moments) -> [f32; 3] {
     [scale, bias, f82]
 }
 

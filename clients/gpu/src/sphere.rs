@@ -8,9 +8,10 @@ use std::path::Path;
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec2, Vec3};
+use microfacet_sampler::lobe::Reflecting;
 use microfacet_sampler::{
-    Bsdf, BsdfSettings, Compensation, Conductor, ConductorFresnel, MicrofacetDistribution,
-    StudentT, Tables, Transport,
+    Bsdf, BsdfSettings, Compensation, Conductor, ConductorFresnel, Masking, StudentT, Tables,
+    Transport,
 };
 
 use crate::device::Gpu;
@@ -140,14 +141,12 @@ fn reflected(
     let r = ((1.0 - z) * (1.0 + z)).sqrt();
     let by_light = frame(axis) * Vec3::new(r * cos, r * sin, z);
     let u = [random(state), random(state)];
-    let facet = Vec3::from(lobe.sample_visible_normal(v, u));
-    let by_metal = 2.0 * v.dot(facet) * facet - v;
+    let by_metal = lobe.sample_reflected(v, u, Masking::HeightCorrelated);
     let mut sum = Vec3::ZERO;
-    for l in [by_light, by_metal] {
+    for l in [Some(by_light), by_metal.map(|(l, _)| l.into())].into_iter().flatten() {
         let brightness = ((l.dot(axis) - scene.rim) / (1.0 - scene.rim)).max(0.0);
         if l.z > 0.0 && brightness > 0.0 {
-            let m = (v + l).normalize();
-            let pdf = lobe.visible_normal_pdf(v, m) / (4.0 * v.dot(m));
+            let (_, pdf) = lobe.eval_pdf(v, l, Masking::HeightCorrelated);
             let f = Vec3::from(metal.eval(v, l, Transport::Radiance));
             sum += scene.radiance * brightness / (pdf + 1.0 / cap) * f * l.z;
         }

@@ -148,7 +148,9 @@ def test_samples_have_the_density_and_weight_of_eval(tables):
         microfacet.StudentT(0.5, 4), f0=(0.9, 0.5, 0.2), f82=0.5, compensation="kulla-conty"
     )
     glass = tables.bsdf("glass", "kulla-conty")
-    coat = microfacet.Plastic(tables.material("glass"), 1.5, (0.8, 0.2, 0.1))
+    coat = microfacet.Plastic(
+        tables.material("glass"), 1.5, (0.8, 0.2, 0.1), compensation="kulla-conty"
+    )
     single = microfacet.Plastic(microfacet.StudentT((0.4, 0.2), 3), 1.5, 0.5)
     rough = microfacet.Dielectric(microfacet.StudentT(1, 3), 1.3)
     for bsdf in [gold, full, glass, coat, single, rough]:

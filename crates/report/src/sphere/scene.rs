@@ -101,16 +101,19 @@ impl Scene {
 
     /// The contribution of a light, however it was drawn: f cos L over the sum of all densities.
     fn share(&self, n: Vec3, frame: &Mat3, v: Vec3, l: Vec3) -> Vec3 {
+        if !(v.z > 0.0 && l.z > 0.0) {
+            return Vec3::ZERO;
+        }
         let towards = *frame * l;
         let (_, drawn) = self.drawn.eval_pdf(v, l, Masking::HeightCorrelated);
         let mut pdf = drawn + self.studio.pdf(towards);
         if self.compensated {
             pdf += cosine_pdf(l);
         }
-        let f = self.bsdf.eval(v, l, Transport::Radiance);
-        if !(v.z > 0.0 && l.z > 0.0 && pdf > 0.0) {
+        if !(pdf > 0.0) {
             return Vec3::ZERO;
         }
+        let f = self.bsdf.eval(v, l, Transport::Radiance);
         Vec3::from(f) * (l.z / pdf) * self.studio.radiance(n, towards, true)
     }
 

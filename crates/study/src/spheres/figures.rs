@@ -110,12 +110,14 @@ fn tables(meter: &Meter) -> Result<Tables, Box<dyn Error>> {
     for (i, gamma) in SHAPES.into_iter().enumerate() {
         // The albedo of a lobe that is not compensated is not needed.
         let is_compensated = i < COMPENSATED;
-        for eta in [COAT, DIAMOND].into_iter().filter(|_| is_compensated) {
-            write!(
-                recipe,
-                "[[material]]\nname = \"η {eta} γ {gamma}\"\nsigma = {SIGMA}\ngamma = {gamma:?}\n\
-                 fresnel = {{ dielectric = {eta} }}\n"
-            )?;
+        if is_compensated {
+            for eta in [COAT, DIAMOND] {
+                write!(
+                    recipe,
+                    "[[material]]\nname = \"η {eta} γ {gamma}\"\nsigma = {SIGMA}\ngamma = {gamma:?}\n\
+                     fresnel = {{ dielectric = {eta} }}\n"
+                )?;
+            }
         }
         let fresnel = if is_compensated { "fresnel = \"mirror\"\n" } else { "" };
         for tilt in [0.0, TILT] {
