@@ -36,9 +36,10 @@ use crate::vector::vec3;
 /// [`Bounded`](crate::lobe::Bounded) lobe fewer samples are lost.
 ///
 /// Single scattering needs no table: T and R are integrated when the plastic is made, to 1e-3, and
-/// to 6e-3 for η < 1. The default set has no albedos of rough coats, so that compensation needs a
-/// set baked from a recipe that names the coat, for round lobes of the family; [`StandIn::Round`]
-/// uses them for anisotropic and tilted lobes.
+/// to 6e-3 for η < 1; to 0.04 and 0.2 where σx is a tenth of σy, or the lobe is tilted. A white
+/// base returns at most 1.003 of the light all the same. The default set has no albedos of rough
+/// coats, so that compensation needs a set baked from a recipe that names the coat, for round lobes
+/// of the family; [`StandIn::Round`] uses them for anisotropic and tilted lobes.
 ///
 /// ```
 /// # #[cfg(feature = "embedded")] {
