@@ -110,7 +110,7 @@ impl Classes {
         let shares = RefCell::new(vec![0.0; random.views.len()]);
         let bounded_batch = move |v: &[Vec3], u: &[[f32; 2]], m: &mut [Vec3]| {
             let shares = &mut shares.borrow_mut()[..v.len()];
-            many.sample_batch(v, u, m, shares).expect("of one length");
+            many.sample_reflecting_batch(v, u, m, shares).expect("of one length");
         };
         let sample = in_a_loop(move |v, u| a.sample_visible_normal(v, u));
         let bounded = in_a_loop(move |v, u| one.at(v).sample(u));

@@ -96,7 +96,7 @@ fn bounded(inputs: Inputs<Bounded>) -> (Vec3, Inputs<Bounded>) {
 #[bench::common(args = (2.5), setup = Inputs::bounded, config = at_most(305.2))]
 fn bounded_batch(mut inputs: Inputs<Bounded>) -> Inputs<Bounded> {
     let Inputs { lobe, v, u, m, g1 } = &mut inputs;
-    lobe.sample_batch(v, u, m, g1).expect("equal lengths");
+    lobe.sample_reflecting_batch(v, u, m, g1).expect("equal lengths");
     black_box(inputs)
 }
 

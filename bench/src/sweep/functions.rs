@@ -112,7 +112,7 @@ pub(super) fn of_bounded() -> Vec<Function<Bounded>> {
             run: Box::new(|bounded, Cases { v, u, normals, values, .. }, at| {
                 let (normals, shares) = (&mut normals[at.clone()], &mut values[at.clone()]);
                 bounded
-                    .sample_batch(&v[at.clone()], &u[at], normals, shares)
+                    .sample_reflecting_batch(&v[at.clone()], &u[at], normals, shares)
                     .expect("of one length");
             }),
         },

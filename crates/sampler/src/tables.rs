@@ -167,7 +167,7 @@ impl Tables {
         &self.tables
     }
 
-    /// The first table of a kind.
+    /// The first table of a kind in the set itself, not in its fallback.
     #[must_use]
     pub fn table(&self, kind: Kind) -> Option<&Table> {
         self.tables().iter().find(|table| table.kind == kind)

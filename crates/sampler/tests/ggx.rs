@@ -5,8 +5,13 @@ use microfacet_model as model;
 use microfacet_model::MicrofacetDistribution as _;
 use microfacet_model::statistics::{sidak, test_visible_normals};
 use microfacet_sampler::lobe::Tabulated;
-use microfacet_sampler::{Ggx, Lobe, MaterialError, MicrofacetDistribution, Tables};
-use microfacet_tables::{Interval, LobeSpec, MaterialEntry, Provenance, Roughness};
+use microfacet_sampler::port::tables_of_shape;
+use microfacet_sampler::{
+    Compensation, Ggx, Lobe, Masking, MaterialError, MicrofacetDistribution, StandIn, Tables,
+};
+use microfacet_tables::{
+    Interval, Kind, LobeSpec, MaterialEntry, Provenance, Reflectance, Roughness,
+};
 
 const SIGMAS: [[f64; 2]; 4] = [[0.3, 0.3], [1e-3, 0.01], [4.0, 0.5], [1e-8, 1e6]];
 const VIEWS: [[f64; 2]; 5] = [[0.0, 0.0], [1e-3, 1.0], [0.8, -2.5], [1.4, 3.0], [1.5705, 0.6]];
@@ -90,7 +95,13 @@ fn without_tables() -> Tables {
         masking: None,
         fresnel: None,
     };
-    let origin = Provenance { materials: vec![gold], ..Provenance::default() };
+    let mirror = MaterialEntry {
+        name: "mirror".into(),
+        fresnel: Some(Reflectance::Mirror),
+        lobe: LobeSpec::student_t([0.3; 2], 2.0),
+        ..gold.clone()
+    };
+    let origin = Provenance { materials: vec![gold, mirror], ..Provenance::default() };
     Tables::from_tables(origin, Vec::new()).unwrap()
 }
 
@@ -109,7 +120,10 @@ fn a_set_without_tables_has_ggx_and_nothing_else() {
         "{error}"
     );
     let error = set.material("silver").unwrap_err().to_string();
-    assert!(error.contains("\"silver\"") && error.ends_with("which holds \"gold\""), "{error}");
+    assert!(
+        error.contains("\"silver\"") && error.ends_with("which holds \"gold\", \"mirror\""),
+        "{error}"
+    );
 }
 
 #[test]
@@ -119,4 +133,30 @@ fn tables_are_preferred_where_there_are_some() {
     let both = without_tables().with_fallback(&embedded);
     assert!(both.material("gold").unwrap().bytes() > 0 && both.student_t(0.3, 3.0).is_ok());
     assert!(both.tables().is_empty(), "what is written remains the set itself");
+}
+
+/// Every lookup goes on in the fallback, which neither narrowing nor joining makes part of the set.
+#[test]
+fn a_fallback_serves_all_lookups_and_is_never_written() {
+    let embedded = Tables::embedded();
+    let both = without_tables().with_fallback(&without_tables()).with_fallback(&embedded);
+    let (masking, lobe) = (Masking::Uncorrelated, both.student_t(0.3, 3.0).unwrap());
+    assert!(both.covers(3.0) && both.tabulates(3.0));
+    assert_eq!(both.shapes(), embedded.shapes());
+    let (got, want) = (both.albedo(0.3, 3.0, masking), embedded.albedo(0.3, 3.0, masking));
+    assert_eq!(got.unwrap().moments([0.6, 0.0, 0.8]), want.unwrap().moments([0.6, 0.0, 0.8]));
+    let average = |set: &Tables| set.average_moments(0.3, 3.0, masking).unwrap();
+    assert_eq!(average(&both), average(&embedded));
+    assert!(both.albedo_of(&lobe, masking, StandIn::Refused).is_ok());
+    assert!(both.bsdf("mirror", Compensation::KullaConty, StandIn::Refused).is_ok());
+    let [masking, ..] = tables_of_shape(&both, 3.0).unwrap();
+    assert_eq!(masking.kind, Kind::Shadowing);
+    // A dielectric is in neither, and a name of the fallback is none of the set.
+    assert!(both.dielectric_albedo(0.3, 3.0, 1.5, Masking::Uncorrelated).is_err());
+    assert!(embedded.clone().with_fallback(&both).material("gold").is_err());
+
+    let only = both.clone().only(&["gold"]).unwrap();
+    assert!(only.tables().is_empty() && only.tabulates(3.0));
+    let joined = Tables::joined([both]).unwrap();
+    assert!(joined.tables().is_empty() && !joined.tabulates(3.0));
 }

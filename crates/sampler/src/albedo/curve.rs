@@ -116,8 +116,12 @@ impl<const N: usize> ViewCurve<N> {
     /// is replaced by the grazing view of its azimuth; only lobes that are not round depend on the
     /// azimuth. Closer to grazing than the table's first view, μ₀ of
     /// [`ViewBlend`](microfacet_tables::axis::ViewBlend), albedos are held constant.
+    #[must_use]
     pub fn eval(&self, v: impl Into<[f32; 3]>) -> [f32; N] {
-        let v = vec3(v);
+        self.of_view(vec3(v))
+    }
+
+    fn of_view(&self, v: Vec3) -> [f32; N] {
         let cos = unit(v.z);
         self.0.with_view(v, |rows, view| self.at(rows, view, cos))
     }

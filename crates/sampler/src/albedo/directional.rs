@@ -23,8 +23,8 @@ use crate::vector::vec3;
 /// than the table's first view, μ₀ of [`ViewBlend`](microfacet_tables::axis::ViewBlend), albedos
 /// approach their limits with the power of cos θ that they have there.
 ///
-/// [`Bsdf`](crate::Bsdf)s compensate multiple scattering themselves; this is for a BSDF of your own.
-/// Two compensations of the light that one bounce loses are made from it: a factor on the lobe
+/// [`Bsdf`](crate::Bsdf)s compensate multiple scattering themselves; this is for a BSDF of your
+/// own. Two compensations of the light that one bounce loses are made from it: a factor on the lobe
 /// ([`turquin`](Self::turquin)) and a lobe of its own ([`compensation`](Self::compensation)).
 ///
 /// ```
@@ -75,17 +75,20 @@ impl Albedo {
     }
 
     /// Moments of the Fresnel weights at a view, each in [0, 1], with a total of at most 1.
+    #[must_use]
     pub fn moments(&self, v: impl Into<[f32; 3]>) -> Moments {
         let v = vec3(v);
         Moments::mirror(unit(v.z)).plus(self.rest(v))
     }
 
     /// The directional albedo E(v) with F = 1, in [0, 1].
+    #[must_use]
     pub fn albedo(&self, v: impl Into<[f32; 3]>) -> f32 {
         1.0 - self.lost(v)
     }
 
     /// The share of light lost, 1 − E(v), with all its digits where E is close to 1.
+    #[must_use]
     pub fn lost(&self, v: impl Into<[f32; 3]>) -> f32 {
         // 0 − x, not −x, which would give −0.
         0.0 - self.rest(vec3(v))[0]

@@ -267,7 +267,7 @@ fn nearest<'a>(
     let distance = |covered: &Covered| {
         let [low, high] = covered.gamma.map(s_of_gamma);
         beyond(s_of_gamma(gamma) + 1.0, [high + 1.0, low + 1.0])
-            + beyond(sigma, covered.sigma)
+            + if sigma == 0.0 && covered.mirror { 0.0 } else { beyond(sigma, covered.sigma) }
             + covered.eta.map_or(0.0, |range| beyond(eta, range))
             + if covered.masking == masking { 0.0 } else { 1.0 }
     };

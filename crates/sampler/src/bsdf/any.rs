@@ -45,6 +45,33 @@ macro_rules! each {
     };
 }
 
+/// The code of all BSDFs and lobes, compiled once, for arrays.
+impl AnyBsdf {
+    fn drawn_with_pdf(
+        &self,
+        v: [f32; 3],
+        choice: f32,
+        u: [f32; 2],
+        transport: Transport,
+    ) -> Option<(BsdfSample, f32)> {
+        each!(self, bsdf => bsdf.sample_with_pdf(v, choice, u, transport))
+    }
+
+    fn drawn(
+        &self,
+        v: [f32; 3],
+        choice: f32,
+        u: [f32; 2],
+        transport: Transport,
+    ) -> Option<BsdfSample> {
+        each!(self, bsdf => bsdf.sample(v, choice, u, transport))
+    }
+
+    fn evaluated(&self, v: [f32; 3], l: [f32; 3], transport: Transport) -> ([f32; 3], f32) {
+        each!(self, bsdf => bsdf.eval_pdf(v, l, transport))
+    }
+}
+
 impl Bsdf for AnyBsdf {
     fn sample_with_pdf(
         &self,
@@ -53,7 +80,7 @@ impl Bsdf for AnyBsdf {
         u: [f32; 2],
         transport: Transport,
     ) -> Option<(BsdfSample, f32)> {
-        each!(self, bsdf => bsdf.sample_with_pdf(v, choice, u, transport))
+        self.drawn_with_pdf(v.into(), choice, u, transport)
     }
 
     fn sample(
@@ -63,7 +90,7 @@ impl Bsdf for AnyBsdf {
         u: [f32; 2],
         transport: Transport,
     ) -> Option<BsdfSample> {
-        each!(self, bsdf => bsdf.sample(v, choice, u, transport))
+        self.drawn(v.into(), choice, u, transport)
     }
 
     fn eval_pdf(
@@ -72,7 +99,7 @@ impl Bsdf for AnyBsdf {
         l: impl Into<[f32; 3]>,
         transport: Transport,
     ) -> ([f32; 3], f32) {
-        each!(self, bsdf => bsdf.eval_pdf(v, l, transport))
+        self.evaluated(v.into(), l.into(), transport)
     }
 
     fn is_delta(&self) -> bool {

@@ -143,6 +143,7 @@ impl Albedo {
     /// lobe's shape; not reciprocal. Where E is 0 (γ near 3/2 at large σ) the factor is limited to
     /// 1e6.
     #[inline]
+    #[must_use]
     pub fn turquin(&self, v: impl Into<[f32; 3]>, f0: f32) -> f32 {
         turquin(self.lost(v), f0)
     }
@@ -155,6 +156,7 @@ impl Albedo {
     /// *Revisiting physically based shading at Imageworks*, slide "energy compensation"; after
     /// Kelemen & Szirmay-Kalos 2001, eq. 11, <https://doi.org/10.2312/egs.20011003>.
     #[inline]
+    #[must_use]
     pub fn compensation(&self, v: impl Into<[f32; 3]>, l: impl Into<[f32; 3]>) -> f32 {
         let (v, l) = (vec3(v), vec3(l));
         if !(v.z > 0.0 && l.z > 0.0) {
@@ -175,6 +177,7 @@ impl Albedo {
     /// Density of [`sample_compensation`](Self::sample_compensation), cos θ_l/π per steradian; 0
     /// below the horizon.
     #[inline]
+    #[must_use]
     pub fn compensation_pdf(&self, l: impl Into<[f32; 3]>) -> f32 {
         let l = vec3(l);
         if l.z > 0.0 { cosine_pdf(l) } else { 0.0 }

@@ -66,16 +66,19 @@ impl<L: Reflecting, const N: usize> Conductor<L, N> {
     }
 
     /// The lobe.
+    #[must_use]
     pub fn lobe(&self) -> &L {
         &self.lobe
     }
 
     /// The facets' reflectance.
+    #[must_use]
     pub fn fresnel(&self) -> &ConductorFresnel<N> {
         &self.fresnel
     }
 
     /// The form of masking and shadowing.
+    #[must_use]
     pub fn masking(&self) -> Masking {
         self.masking
     }

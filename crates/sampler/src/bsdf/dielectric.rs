@@ -76,7 +76,8 @@ type Account<'a> = Option<(&'a Returned, Shares)>;
 type Sender = (Vec3, Option<Refraction>);
 
 impl<L: Tabulated> Dielectric<L> {
-    /// A dielectric of a lobe and an index of refraction η, inside over outside, in three channels.
+    /// A dielectric of a lobe and an index of refraction η, inside over outside, in three channels:
+    /// no argument would tell their number, which [`with_channels`](Self::with_channels) changes.
     ///
     /// # Errors
     /// [`BindError::Index`] unless η lies in [1e-3, 1e3]; [`BindError`] if a compensation was asked
@@ -121,16 +122,19 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
     }
 
     /// The lobe.
+    #[must_use]
     pub fn lobe(&self) -> &L {
         &self.lobe
     }
 
     /// The index of refraction, inside over outside.
+    #[must_use]
     pub fn eta(&self) -> f64 {
         self.index
     }
 
     /// The form of masking and shadowing.
+    #[must_use]
     pub fn masking(&self) -> Masking {
         self.masking
     }

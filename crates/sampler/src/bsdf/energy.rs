@@ -23,8 +23,6 @@ pub(super) struct Energy {
     reflected: [f32; 2],
     /// The average that is transmitted from outside, compensation included.
     transmitted: f32,
-    /// The average that one bounce reflects from inside.
-    back: f32,
 }
 
 /// The albedos of one bounce.
@@ -70,8 +68,8 @@ impl Energy {
         let thin = 1.0 - fresnel_average(|cos| dielectric(dense, cos));
         let transmitted = if eta >= 1.0 { thin } else { thin / (dense * dense) };
         let (albedo, compensation) = (OneBounce::Smooth, Compensation::None);
-        let (lost, reflected, back) = ([0.0; 2], [1.0; 2], 0.0);
-        Self { albedo, compensation, eta, lost, transmitted, reflected, back }
+        let (lost, reflected) = ([0.0; 2], [1.0; 2]);
+        Self { albedo, compensation, eta, lost, transmitted, reflected }
     }
 
     /// The energy of one bounce off a rough coat, seen from outside.
@@ -79,10 +77,9 @@ impl Energy {
         Self {
             compensation: Compensation::None,
             eta,
-            lost: [0.0; 2],
+            lost: [0.0, albedo.lost_inside],
             reflected: [1.0; 2],
             transmitted: albedo.transmitted(),
-            back: albedo.back,
             albedo: OneBounce::Coat(albedo),
         }
     }
@@ -110,7 +107,7 @@ impl Energy {
         let flux = outside.min(squared * inside);
         let crossing = |lost: f64, flux: f64| if lost > 0.0 { (flux / lost).min(1.0) } else { 0.0 };
         let crossing = [crossing(lost[0], flux), crossing(lost[1], flux / squared)];
-        let [[_, single, _, whole], [back, ..]] = averages;
+        let [[_, single, _, whole], _] = averages;
         let transmitted = match compensation {
             Compensation::None => single,
             Compensation::Turquin => whole,
@@ -123,7 +120,6 @@ impl Energy {
             lost: lost.map(|x| x as f32),
             transmitted: transmitted as f32,
             reflected: crossing.map(|x| (1.0 - x) as f32),
-            back: back as f32,
         }
     }
 
@@ -193,17 +189,12 @@ impl Energy {
     /// η² (1 − ρ R) for a base of albedo ρ, with R the share of diffuse light from inside that the
     /// coat reflects.
     ///
-    /// R is the share that all bounces do not transmit, or without compensation the share that one
-    /// bounce reflects.
+    /// By reciprocity the share that it transmits is T/η², and without compensation some is lost.
+    /// So 1 − R is computed as their sum: a dense coat lets so little out that it would be all
+    /// rounding of 1 − R, and the light that enters a white base leaves it again.
     pub(super) fn left(&self, base: f32) -> f32 {
         let squared = self.eta * self.eta;
-        match (&self.albedo, self.compensation) {
-            (OneBounce::Tables(_) | OneBounce::Coat(_), Compensation::None) => {
-                squared * (1.0 - base * self.back)
-            }
-            // By reciprocity 1 − R = T/η², so that the light that enters a white base leaves it
-            // again to rounding; this avoids the cancellation of 1 − (1 − T/η²).
-            _ => squared * (1.0 - base) + base * self.transmitted,
-        }
+        let lost = if self.compensation == Compensation::None { self.lost[1] } else { 0.0 };
+        squared * (1.0 - base) + base * (self.transmitted + squared * lost)
     }
 }

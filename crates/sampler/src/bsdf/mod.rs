@@ -85,6 +85,7 @@ impl<const N: usize> BsdfSample<N> {
     /// A light that is reflected, and no delta, for a BSDF of your own; another event sets its
     /// fields.
     #[inline(always)]
+    #[must_use]
     pub fn reflected(l: impl Into<[f32; 3]>, weight: [f32; N]) -> Self {
         Self { l: l.into(), weight, event: Event::Reflection, delta: false, eta: 1.0 }
     }
@@ -122,6 +123,7 @@ pub trait Bsdf<const N: usize = 3> {
     /// The three numbers are in [0, 1], clamped to it and NaN to 0; they are used independently, so
     /// a stratified `u` stays stratified. `None` where the drawn facet reflects below the horizon,
     /// or refracts above it. The path then ends with a weight of 0, which counts in a mean.
+    #[must_use]
     fn sample_with_pdf(
         &self,
         v: impl Into<[f32; 3]>,
@@ -131,6 +133,7 @@ pub trait Bsdf<const N: usize = 3> {
     ) -> Option<(BsdfSample<N>, f32)>;
 
     /// f, without the cosine, and the density with which [`sample`](Self::sample) draws `l`.
+    #[must_use]
     fn eval_pdf(
         &self,
         v: impl Into<[f32; 3]>,
@@ -141,7 +144,9 @@ pub trait Bsdf<const N: usize = 3> {
     /// The light and weight of [`sample_with_pdf`](Self::sample_with_pdf), without the density,
     /// which [`pdf`](Self::pdf) computes later for paths that need it.
     ///
-    /// Without compensation this leaves out D, 9 to 17 % of the instructions (`guard/`).
+    /// Of conductors and dielectrics without compensation this leaves out D, 9 to 17 % of a
+    /// conductor's instructions (`guard/`); others need it for the weight.
+    #[must_use]
     #[inline]
     fn sample(
         &self,
@@ -154,6 +159,7 @@ pub trait Bsdf<const N: usize = 3> {
     }
 
     /// f, without the cosine.
+    #[must_use]
     #[inline]
     fn eval(
         &self,
@@ -165,6 +171,7 @@ pub trait Bsdf<const N: usize = 3> {
     }
 
     /// The density with which [`sample`](Self::sample) draws `l`, per steradian.
+    #[must_use]
     #[inline]
     fn pdf(&self, v: impl Into<[f32; 3]>, l: impl Into<[f32; 3]>) -> f32 {
         self.eval_pdf(v, l, Transport::Radiance).1
@@ -172,8 +179,10 @@ pub trait Bsdf<const N: usize = 3> {
 
     /// Whether all its events are deltas: [`eval`](Self::eval) is 0 everywhere and lights need not
     /// be sampled.
+    #[must_use]
     fn is_delta(&self) -> bool;
 
     /// Whether light passes from one side to the other.
+    #[must_use]
     fn transmits(&self) -> bool;
 }

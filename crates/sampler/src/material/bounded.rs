@@ -158,6 +158,7 @@ impl Bounded {
 
     /// The normals of a view.
     #[inline(always)]
+    #[must_use]
     pub fn at(&self, v: impl Into<[f32; 3]>) -> BoundedView<'_> {
         let v = vec3(v);
         let view = if self.lobe.slices.peeled {
@@ -180,7 +181,7 @@ impl Bounded {
     ///
     /// # Errors
     /// [`BatchError`] if the slices are not of one length; nothing is then written.
-    pub fn sample_batch<V: Copy + Into<[f32; 3]>, M: From<[f32; 3]>>(
+    pub fn sample_reflecting_batch<V: Copy + Into<[f32; 3]>, M: From<[f32; 3]>>(
         &self,
         v: &[V],
         u: &[[f32; 2]],
@@ -385,6 +386,7 @@ fn within(from: f32, share: f32, u: f32) -> f32 {
 impl BoundedView<'_> {
     /// A normal from two random numbers, which are clamped to [0, 1].
     #[inline]
+    #[must_use]
     pub fn sample(&self, u: [f32; 2]) -> [f32; 3] {
         let (lobe, v) = (self.lobe, self.v);
         let u = [within(self.from, self.share, u[0]), u[1]];
@@ -407,12 +409,14 @@ impl BoundedView<'_> {
     ///
     /// The density of reflected directions is this density over 4 v·m.
     #[inline]
+    #[must_use]
     pub fn visible_normal_pdf(&self, m: impl Into<[f32; 3]>) -> f32 {
         self.lobe.visible_normal_pdf(self.v, m) / self.share
     }
 
     /// The density of the table's samples for an `m` that reflects the view above the horizon, see
     /// [`Tabulated::table_pdf`].
+    #[must_use]
     pub fn table_pdf(&self, m: impl Into<[f32; 3]>) -> f32 {
         self.lobe.table_pdf(self.v, m) / self.share
     }

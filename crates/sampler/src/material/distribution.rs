@@ -82,9 +82,11 @@ impl Facet {
 pub trait MicrofacetDistribution {
     /// Normal distribution function D(m), with ∫ D(m) (m·n) dm = 1; 0 for m at or below the
     /// horizon.
+    #[must_use]
     fn d(&self, m: impl Into<[f32; 3]>) -> f32;
 
     /// Smith masking G1(v) ∈ [0, 1]: the visible share of the microsurface projected along `v`.
+    #[must_use]
     fn g1(&self, v: impl Into<[f32; 3]>) -> f32;
 
     /// A normal visible from `v`, from two numbers in [0, 1] (clamped to them, NaN to 0).
@@ -92,6 +94,7 @@ pub trait MicrofacetDistribution {
     /// From tables `u[0]` chooses the slope along the azimuth of the view and `u[1]` that across,
     /// both rising, so that stratified numbers give stratified normals. The normal has unit length
     /// to 4 ulp, lies above the horizon, and faces the view to rounding (v·m > −5e-7).
+    #[must_use]
     fn sample_visible_normal(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> [f32; 3];
 
     /// Density of visible normals, (v·m)⁺ D(m)/A(v), with A the projected area of the microsurface
@@ -101,12 +104,14 @@ pub trait MicrofacetDistribution {
     ///
     /// 0 where `m` faces away or lies below the horizon; finite at grazing views. Analytic, with
     /// the area from the tables.
+    #[must_use]
     fn visible_normal_pdf(&self, v: impl Into<[f32; 3]>, m: impl Into<[f32; 3]>) -> f32;
 
     /// A visible normal and its analytic density, [`visible_normal_pdf`](Self::visible_normal_pdf).
     ///
     /// The samples differ from this density by the errors of the tables, some 1e-4 of the CDF;
     /// where that bias matters divide by [`table_pdf`](crate::lobe::Tabulated::table_pdf).
+    #[must_use]
     #[inline]
     fn sample_with_pdf(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> ([f32; 3], f32) {
         let v = v.into();
@@ -116,12 +121,14 @@ pub trait MicrofacetDistribution {
 
     /// Smith's Λ(v) = 1/G1 − 1 ≥ 0. Its absolute accuracy is that of G1: where Λ is below 1e-5 only
     /// its order of magnitude is meaningful.
+    #[must_use]
     #[inline]
     fn lambda(&self, v: impl Into<[f32; 3]>) -> f32 {
         1.0 / self.g1(v) - 1.0
     }
 
     /// Masking and shadowing G2 of view and light; 0 when either is at or below the horizon.
+    #[must_use]
     #[inline]
     fn g2(&self, v: impl Into<[f32; 3]>, l: impl Into<[f32; 3]>, masking: Masking) -> f32 {
         masking.g2(self.g1(v), self.g1(l))
@@ -133,6 +140,7 @@ pub trait MicrofacetDistribution {
     /// Computed as G2/G1; dividing f·cos θ_l by the density would overflow near the horizon, and
     /// has few digits, or none, where both are subnormal, as in the far tails of Beckmann. 0 when
     /// `v` or `l` is at or below the horizon.
+    #[must_use]
     #[inline]
     fn reflection_weight(
         &self,
@@ -151,6 +159,7 @@ pub trait MicrofacetDistribution {
     ///
     /// The microfacet BRDF without Fresnel is density·weight/(4 l·n), the density of the reflected
     /// light density/4. For light that is transmitted `l` is the direction opposite to it.
+    #[must_use]
     #[inline]
     fn facet(
         &self,
@@ -176,6 +185,7 @@ pub trait MicrofacetDistribution {
     /// 2.5e-3 where cos θ = 0.01. A mirror returns all light; just above this limit one bounce
     /// returns it to 6e-3 at cos θ ≥ 0.01, whatever γ. The surface brightens by that where a
     /// texture of roughness crosses the limit.
+    #[must_use]
     fn is_effectively_smooth(&self) -> bool {
         false
     }

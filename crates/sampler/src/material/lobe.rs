@@ -133,7 +133,7 @@ impl Batch for Lobe {
         u: &[[f32; 2]],
         m: &mut [M],
     ) -> Result<(), BatchError> {
-        each!(self, lobe => Batch::sample_batch(lobe, v, u, m))
+        each!(self, lobe => lobe.sample_batch(v, u, m))
     }
 
     fn g1_batch<V: Copy + Into<[f32; 3]>>(

@@ -31,6 +31,7 @@ pub trait Reflecting: MicrofacetDistribution {
     /// v·m is not positive, rounding has put the normal behind the silhouette, and no light is
     /// reflected. Lobes may leave out normals that reflect the view below the horizon; all others
     /// keep their density, divided by the share.
+    #[must_use]
     #[inline(always)]
     fn sample_reflecting_normal(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> ([f32; 3], f32) {
         (self.sample_visible_normal(v, u), 1.0)
@@ -38,6 +39,7 @@ pub trait Reflecting: MicrofacetDistribution {
 
     /// The probability in (0, 1] that a visible normal is one of those that
     /// [`sample_reflecting_normal`](Self::sample_reflecting_normal) draws.
+    #[must_use]
     #[inline(always)]
     fn reflecting_share(&self, _v: impl Into<[f32; 3]>) -> f32 {
         1.0
@@ -49,6 +51,7 @@ pub trait Reflecting: MicrofacetDistribution {
     ///
     /// The density, which many paths never need, is [`eval_pdf`](Self::eval_pdf)'s. A reflectance
     /// is that of the cosine v·m = √(½ (1 + v·l)).
+    #[must_use]
     #[inline]
     fn sample_reflected(
         &self,
@@ -69,6 +72,7 @@ pub trait Reflecting: MicrofacetDistribution {
     ///
     /// 0 where `v` or `l` is at or below the horizon, or NaN; finite everywhere, `f32::MAX` in
     /// place of what single precision cannot hold.
+    #[must_use]
     #[inline]
     fn eval_pdf(
         &self,

@@ -149,6 +149,7 @@ impl StudentT {
     /// table; the rest draws from the closed-form heavy part.
     ///
     /// 1 where the whole distribution is tabulated.
+    #[must_use]
     pub fn tabulated_share(&self, v: impl Into<[f32; 3]>) -> f32 {
         if !self.slices.peeled {
             return 1.0;

@@ -176,9 +176,13 @@ impl StudentT {
     ///
     /// Between joints the density of the samples is smooth, so a quadrature that divides there
     /// converges fast. x may end at ±∞.
+    #[must_use]
     pub fn table_joints(&self, v: impl Into<[f32; 3]>) -> [Vec<f64>; 2] {
-        let view = self.stretch(vec3(v));
-        let Some(rows) = self.rows_at(self.coordinate(&view)) else { return Default::default() };
+        self.joints(&self.stretch(vec3(v)))
+    }
+
+    fn joints(&self, view: &Stretched) -> [Vec<f64>; 2] {
+        let Some(rows) = self.rows_at(self.coordinate(view)) else { return Default::default() };
         let half = self.slices.half_cells + 1;
         let slope = |g: f64, sign: f64| {
             let [x, z] = slope_at(g);

@@ -15,6 +15,7 @@ pub trait Tabulated: MicrofacetDistribution {
     /// Except for [`Radial`](crate::lobe::Radial): it returns
     /// [`visible_normal_pdf`](MicrofacetDistribution::visible_normal_pdf), from which its samples
     /// differ by the errors of its tables.
+    #[must_use]
     #[inline]
     fn table_pdf(&self, v: impl Into<[f32; 3]>, m: impl Into<[f32; 3]>) -> f32 {
         self.visible_normal_pdf(v, m)
@@ -22,11 +23,13 @@ pub trait Tabulated: MicrofacetDistribution {
 
     /// The key of the lobe in tables of albedos. A BSDF also learns from it whether D has a pole on
     /// the horizon.
+    #[must_use]
     fn key(&self) -> LobeKey {
         LobeKey::Unknown
     }
 
     /// Bytes of table that lookups touch.
+    #[must_use]
     fn bytes(&self) -> usize {
         0
     }
