@@ -8,6 +8,7 @@
 //! tables.
 //!
 #![doc = include_str!("picture.md")]
+//!
 //! *The seventy lines of `docs/first-renderer.md`.*
 //!
 //! Directions are unit vectors in the tangent frame, n = +z: `v` the view, `l` the light, `m` a
@@ -17,7 +18,8 @@
 //! A complete material:
 //!
 //! ```
-//! use microfacet_sampler::{Bsdf, BsdfSettings, Compensation, Conductor, Metal, Tables, Transport};
+//! use microfacet_sampler::{Bsdf, BsdfSettings, Compensation, Conductor};
+//! use microfacet_sampler::{Metal, Tables, Transport};
 //!
 //! fn main() -> Result<(), microfacet_sampler::BindError> {
 //!     let tables = Tables::embedded(); // 1.7 MB, compiled in; or Tables::from_bytes(&file)
@@ -26,7 +28,7 @@
 //!
 //!     let (v, l) = ([0.6, 0.0, 0.8], [0.0, 0.0, 1.0]);
 //!     let (f, pdf) = gold.eval_pdf(v, l, Transport::Radiance); // f without the cosine
-//!     let path = gold.sample(v, 0.2, [0.3, 0.7], Transport::Radiance); // a light and its weight
+//!     let path = gold.sample(v, 0.2, [0.3, 0.7], Transport::Radiance); // l, weight
 //!     assert!(f[0] > f[2] && pdf > 0.0 && path.is_some());
 //!     Ok(())
 //! }
