@@ -100,6 +100,7 @@ extern crate alloc;
 pub mod albedo;
 pub mod port;
 
+mod bind_error;
 mod bsdf;
 mod elementary;
 mod error;
@@ -107,9 +108,10 @@ mod material;
 mod tables;
 mod vector;
 
+pub use bind_error::BindError;
 pub use bsdf::{
-    AnyBsdf, BindError, Bsdf, BsdfSample, BsdfSettings, Compensation, Conductor, ConductorFresnel,
-    Dielectric, Event, Metal, Plastic, StandIn, Transport, UnknownMetal,
+    AnyBsdf, Bsdf, BsdfSample, BsdfSettings, Compensation, Conductor, ConductorFresnel, Dielectric,
+    Event, Metal, Plastic, StandIn, Transport, UnknownMetal,
 };
 pub use error::MaterialError;
 pub use material::{Ellipsoid, Ggx, Lobe, MicrofacetDistribution, StudentT};

@@ -9,7 +9,7 @@ use microfacet_core::shape::s_of_gamma;
 use microfacet_core::{Roughness, Skew};
 use microfacet_tables::{Kind, LoadError, LobeSpec, MaterialEntry, Provenance, Table, decode};
 
-use crate::bsdf::BindError;
+use crate::bind_error::BindError;
 use crate::error::MaterialError;
 use crate::material::{Ellipsoid, Ggx, Lobe, Radial, Smooth, StudentT, coverage};
 

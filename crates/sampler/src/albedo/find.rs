@@ -7,7 +7,7 @@ use microfacet_tables::{Kind, LobeForm, Mapping, MaterialEntry, Reflectance, Sid
 use super::curve::{DielectricAlbedo, FresnelAlbedo, MaterialPoint, MaterialWeights, ViewCurve};
 use super::directional::Albedo;
 use super::moments::Moments;
-use crate::bsdf::BindError;
+use crate::bind_error::BindError;
 use crate::error::{Covered, MaterialError};
 use crate::tables::Tables;
 

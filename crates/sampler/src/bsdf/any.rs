@@ -4,9 +4,9 @@ use microfacet_tables::Reflectance;
 
 use super::bind::StandIn;
 use super::compensation::Compensation;
-use super::error::BindError;
 use super::settings::BsdfSettings;
 use super::{Bsdf, BsdfSample, Conductor, ConductorFresnel, Dielectric, Plastic, Transport};
+use crate::bind_error::BindError;
 use crate::material::Lobe;
 use crate::tables::Tables;
 

@@ -5,8 +5,8 @@ use alloc::boxed::Box;
 use microfacet_core::Masking;
 use microfacet_tables::{Kind, LobeSpec, Reflectance};
 
-use super::error::BindError;
 use crate::albedo::{Albedo, DielectricAlbedo};
+use crate::bind_error::BindError;
 use crate::error::MaterialError;
 use crate::material::{LobeKey, Tabulated};
 use crate::tables::Tables;

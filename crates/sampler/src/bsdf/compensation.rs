@@ -11,9 +11,9 @@ use core::f32::consts::FRAC_1_PI;
 use glam::Vec3;
 
 use super::broad::{Broad, cosine_pdf};
-use super::mixture::Part;
 use super::reflectance::ConductorFresnel;
 use crate::albedo::Albedo;
+use crate::material::Part;
 use crate::vector::vec3;
 
 /// How a BSDF returns the light that one bounce loses to further ones.

@@ -4,13 +4,13 @@ use glam::Vec3;
 use microfacet_core::Masking;
 
 use super::compensation::{Compensation, Returned};
-use super::error::BindError;
-use super::facets::{Facets, White};
-use super::mixture::{Mixture, Part, are_finite, choice, chosen};
+use super::mixture::{Mixture, are_finite, choice, chosen};
 use super::reflectance::ConductorFresnel;
 use super::settings::BsdfSettings;
 use super::{Bsdf, BsdfSample, Transport};
 use crate::albedo::Albedo;
+use crate::bind_error::BindError;
+use crate::material::{Facets, Part, White};
 use crate::material::{Reflecting, Tabulated};
 use crate::vector::vec3;
 

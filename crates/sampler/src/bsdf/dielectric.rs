@@ -8,14 +8,14 @@ use microfacet_core::{Masking, saturated};
 use super::broad::Broad;
 use super::compensation::Compensation;
 use super::energy::{Energy, Shares, side};
-use super::error::BindError;
-use super::facets::White;
 use super::interface::{Interface, Refraction, checked};
-use super::mixture::{Mixture, Part, are_finite, choice, chosen};
+use super::mixture::{Mixture, are_finite, choice, chosen};
 use super::settings::BsdfSettings;
 use super::{Bsdf, BsdfSample, Event, Transport};
 use crate::albedo::DielectricAlbedo;
-use crate::material::{Facet, MicrofacetDistribution, Tabulated};
+use crate::bind_error::BindError;
+use crate::material::White;
+use crate::material::{Facet, MicrofacetDistribution, Part, Tabulated};
 use crate::vector::vec3;
 
 /// A rough interface between two transparent media: every facet reflects F of the light and

@@ -5,8 +5,8 @@ use microfacet_core::fresnel::{dielectric, dielectric_of_cosines, refracted_cos}
 use microfacet_core::math::sqrt64;
 
 use super::Transport;
-use super::error::BindError;
 use super::reflectance::indices;
+use crate::bind_error::BindError;
 
 /// The range of indices of refraction, inside over outside, far wider than that of matter.
 const ETA: [f64; 2] = [1e-3, 1e3];

@@ -6,31 +6,14 @@ use microfacet_core::math::unit;
 use microfacet_core::saturated;
 
 use super::broad::{Broad, cosine_pdf};
-
-/// Facets or broad lobe: a weight f |cos θ_l|/pdf by channel and a density, both of this part of
-/// the mixture alone.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Part<const N: usize> {
-    pub(super) weight: [f32; N],
-    pub(super) pdf: f32,
-}
+use crate::material::Part;
 
 impl<const N: usize> Part<N> {
-    pub(super) const NONE: Self = Self { weight: [0.0; N], pdf: 0.0 };
-
     /// The broad lobe at a light: its share on the side of that light, and π f over that share.
     #[inline(always)]
     pub(super) fn broad(l: Vec3, broad: &Broad, share: f32, lobe: [f32; N]) -> Self {
         let factor = broad.factor(l);
         Self { weight: lobe.map(|lobe| lobe / factor), pdf: share * factor * cosine_pdf(l) }
-    }
-
-    /// f, without the cosine.
-    #[inline(always)]
-    pub(super) fn f(&self, l: Vec3) -> [f32; N] {
-        // The density of facets may be `f32::MAX`, and the quotient by a small cosine overflow.
-        let inverse = saturated(1.0 / l.z.abs());
-        self.weight.map(|weight| saturated(weight * self.pdf * inverse))
     }
 }
 

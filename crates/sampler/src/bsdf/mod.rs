@@ -3,10 +3,10 @@
 //!
 //! `conductor`, `dielectric` and `plastic` are the BSDFs, `any` any of them; `reflectance` is
 //! Fresnel's or Schlick's of conductors, `metal` metals by name, and `interface` the geometry of
-//! refraction. `facets` is single reflection; `mixture` joins it with `broad`, the density of light
+//! refraction. `mixture` joins single reflection with `broad`, the density of light
 //! of further bounces. `energy` and `compensation` compute the shares of light that one bounce
 //! returns and loses; `settings` says how BSDFs are made, `bind` finds albedos in tables, and
-//! `error` says which are missing; `coat` computes that of a coat without tables.
+//! `coat` computes that of a coat without tables.
 
 mod any;
 mod bind;
@@ -16,8 +16,6 @@ mod compensation;
 mod conductor;
 mod dielectric;
 mod energy;
-mod error;
-mod facets;
 mod interface;
 mod metal;
 mod mixture;
@@ -30,14 +28,11 @@ pub use bind::StandIn;
 pub use compensation::Compensation;
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
-pub use error::BindError;
 pub use interface::steep_cosine;
 pub use metal::{Metal, UnknownMetal};
 pub use plastic::Plastic;
 pub use reflectance::ConductorFresnel;
 pub use settings::BsdfSettings;
-
-pub(crate) use facets::Facets;
 
 use glam::Vec3;
 

@@ -9,14 +9,14 @@ use super::broad::Broad;
 use super::coat::CoatAlbedo;
 use super::compensation::Compensation;
 use super::energy::{Energy, OUTSIDE, Shares};
-use super::error::BindError;
-use super::facets::{Facets, White};
 use super::interface::{Interface, checked};
-use super::mixture::{Mixture, Part, are_finite, choice, chosen};
+use super::mixture::{Mixture, are_finite, choice, chosen};
 use super::reflectance::reflectances;
 use super::settings::BsdfSettings;
 use super::{Bsdf, BsdfSample, Transport};
 use crate::albedo::DielectricAlbedo;
+use crate::bind_error::BindError;
+use crate::material::{Facets, Part, White};
 use crate::material::{Reflecting, Tabulated};
 use crate::vector::vec3;
 

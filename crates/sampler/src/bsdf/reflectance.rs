@@ -4,9 +4,9 @@ use microfacet_core::fresnel::conductor;
 use microfacet_core::math::unit;
 use microfacet_core::schlick::{f82_dip, f82_weight, schlick};
 
-use super::error::BindError;
 use super::metal::Metal;
 use crate::albedo::{fresnel_average, schlick_average};
+use crate::bind_error::BindError;
 
 /// The reflectance of a conductor's facets, in N channels.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -18,7 +18,7 @@ use super::roughness::checked;
 use super::slices::{Slice, Slices};
 use super::student_t::StudentT;
 use super::tabulated::Tabulated;
-use crate::bsdf::BindError;
+use crate::error::MaterialError;
 use crate::vector::vec3;
 
 /// A lobe of any isotropic distribution: GTR, Gauss, Schlick or a measured one.
@@ -43,6 +43,14 @@ pub struct Radial {
     name: String,
 }
 
+/// Why tables make no lobe of a distribution.
+pub(crate) enum RadialError {
+    /// A roughness out of range.
+    Sigma(MaterialError),
+    /// The name of a table that is missing.
+    NoTable(String),
+}
+
 /// s in the formulas of tables without a γ axis: slopes across are in units of √(1 + x²), and κ is
 /// the scale of its axis.
 const ROUND: f64 = 1.0;
@@ -61,13 +69,13 @@ impl Radial {
         tables: &[Table],
         sigma: f32,
         label: &str,
-    ) -> Result<Self, BindError> {
-        let [sigma, _] = checked(sigma.into())?;
+    ) -> Result<Self, RadialError> {
+        let [sigma, _] = checked(sigma.into()).map_err(RadialError::Sigma)?;
         let slice = |kind: Kind| {
             let found = tables.iter().find(|table| {
                 table.kind == kind && table.subject.lobe.distribution.as_deref() == Some(label)
             });
-            let missing = || BindError::NoTable(format!("{} of {label}", kind.name()));
+            let missing = || RadialError::NoTable(format!("{} of {label}", kind.name()));
             found.map(Slice::whole).ok_or_else(missing)
         };
         let (shadowing, slope) = (slice(Kind::RadialShadowing)?, slice(Kind::RadialSlope)?);

@@ -1,4 +1,4 @@
-//! Errors of making a BSDF.
+//! Errors of making a BSDF, and of requests to the tables of a set by name.
 
 use alloc::boxed::Box;
 use alloc::format;
@@ -9,7 +9,7 @@ use microfacet_core::{Masking, SkewError};
 use microfacet_tables::Range;
 
 use crate::error::MaterialError;
-use crate::material::LobeKey;
+use crate::material::{LobeKey, RadialError};
 
 /// Why a BSDF, or a named material, cannot be made: a number outside its domain, an albedo that the
 /// tables lack, or a name that they do not have.
@@ -162,5 +162,14 @@ impl From<MaterialError> for BindError {
 impl From<SkewError> for BindError {
     fn from(why: SkewError) -> Self {
         Self::Material(why.into())
+    }
+}
+
+impl From<RadialError> for BindError {
+    fn from(why: RadialError) -> Self {
+        match why {
+            RadialError::Sigma(why) => why.into(),
+            RadialError::NoTable(name) => Self::NoTable(name),
+        }
     }
 }
