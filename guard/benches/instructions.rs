@@ -100,14 +100,17 @@ fn bounded_batch(mut inputs: Inputs<Bounded>) -> Inputs<Bounded> {
     black_box(inputs)
 }
 
+// By what the compiler happens to inline, views below the lobe's horizon take these counts, or 5
+// and 2 % fewer.
+
 #[library_benchmark]
-#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(192.1))]
+#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(203.1))]
 fn ellipsoid_g1(inputs: Inputs<Ellipsoid>) -> (f32, Inputs<Ellipsoid>) {
     (black_box(inputs.v.iter().map(|v| black_box(inputs.lobe.g1(*v))).sum()), inputs)
 }
 
 #[library_benchmark]
-#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(710.0))]
+#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(726.8))]
 fn ellipsoid_sample_visible_normal(inputs: Inputs<Ellipsoid>) -> (Vec3, Inputs<Ellipsoid>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (sum(calls.map(|(v, u)| inputs.lobe.sample_visible_normal(*v, *u))), inputs)
