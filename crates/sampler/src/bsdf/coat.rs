@@ -122,19 +122,22 @@ impl Azimuth {
     /// The nodes on both sides of a view, and the weight of the second.
     #[inline]
     fn between(self, v: Vec3) -> ([usize; 2], f32) {
-        let at = match self {
-            Self::Round => return ([0, 0], 0.0),
+        match self {
+            Self::Round => ([0, 0], 0.0),
             Self::Upright([x, y]) => {
                 let quarter = libm::atan2f(y * v.y.abs(), x * v.x.abs()) * (2.0 / PI);
-                quarter * (QUARTER - 1) as f32
+                let at = quarter * (QUARTER - 1) as f32;
+                let node = at as usize;
+                ([node, node + 1].map(|node| node.min(QUARTER - 1)), at - node as f32)
             }
             Self::Any => {
                 let turns = libm::atan2f(v.y, v.x) * (1.0 / TAU);
-                (if turns < 0.0 { turns + 1.0 } else { turns }) * FULL as f32
+                let at = (if turns < 0.0 { turns + 1.0 } else { turns }) * FULL as f32;
+                // The sum rounds to a full turn next to the first node.
+                let node = at as usize;
+                ([node, node + 1].map(|node| node % FULL), at - node as f32)
             }
-        };
-        let (count, node) = (self.count(), at as usize);
-        ([node.min(count - 1), (node + 1) % count], at - node as f32)
+        }
     }
 }
 
@@ -347,6 +350,13 @@ mod tests {
                         }
                     }
                     assert!(worst < limit, "{lobe:?} {eta}: {worst}");
+                    // An azimuth that rounds to a full turn, and the other end of a quarter.
+                    let along = |x, y| coat.shares(Vec3::new(x, y, 0.6));
+                    for (a, b) in
+                        [(along(0.8, -1e-9), along(0.8, 0.0)), (along(1e-9, 0.8), along(0.0, 0.8))]
+                    {
+                        assert!((a[1] - b[1]).abs() < 1e-5, "{lobe:?} {eta}: {a:?} {b:?}");
+                    }
                 }
             }
         }

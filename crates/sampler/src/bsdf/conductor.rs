@@ -10,8 +10,7 @@ use super::settings::BsdfSettings;
 use super::{Bsdf, BsdfSample, Transport};
 use crate::albedo::Albedo;
 use crate::bind_error::BindError;
-use crate::material::{Facets, Part, White};
-use crate::material::{Reflecting, Tabulated};
+use crate::material::{Facets, Part, Reflecting, Tabulated, White};
 use crate::vector::vec3;
 
 /// A rough conductor: every facet reflects F of the light and absorbs the rest.

@@ -14,8 +14,7 @@ use super::settings::BsdfSettings;
 use super::{Bsdf, BsdfSample, Event, Transport};
 use crate::albedo::DielectricAlbedo;
 use crate::bind_error::BindError;
-use crate::material::White;
-use crate::material::{Facet, MicrofacetDistribution, Part, Tabulated};
+use crate::material::{Facet, MicrofacetDistribution, Part, Tabulated, White};
 use crate::vector::vec3;
 
 /// A rough interface between two transparent media: every facet reflects F of the light and

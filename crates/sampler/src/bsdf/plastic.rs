@@ -16,8 +16,7 @@ use super::settings::BsdfSettings;
 use super::{Bsdf, BsdfSample, Transport};
 use crate::albedo::DielectricAlbedo;
 use crate::bind_error::BindError;
-use crate::material::{Facets, Part, White};
-use crate::material::{Reflecting, Tabulated};
+use crate::material::{Facets, Part, Reflecting, Tabulated, White};
 use crate::vector::vec3;
 
 /// A rough dielectric coat over a Lambert base, which receives exactly the light that the coat
