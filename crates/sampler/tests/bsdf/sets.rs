@@ -1,5 +1,5 @@
-//! A sampler, its density and evaluation are one set: of every BSDF, of reflection off a lobe, and in
-//! the furnace of plastics.
+//! A sampler, its density and evaluation are one set: of every BSDF, of reflection off a lobe, and
+//! in the furnace of plastics.
 
 use super::*;
 
