@@ -126,7 +126,8 @@ pub use tables::Tables;
 pub mod lobe {
     pub use crate::error::BatchError;
     pub use crate::material::{
-        Batch, Bounded, BoundedView, Facet, LobeKey, Radial, Reflecting, Smooth, Tabulated,
+        Batch, Bounded, BoundedRef, BoundedView, EllipsoidRef, Facet, LobeKey, Radial, Reflecting,
+        Smooth, StudentTRef, Tabulated,
     };
     pub use microfacet_core::{Roughness, SkewError};
 }

@@ -14,7 +14,8 @@ use microfacet_core::math::{sqrt, unit};
 use microfacet_tables::axis::half_tangent::Slope;
 use microfacet_tables::axis::hermite::{Cell, cubic_cells, horner, locate};
 
-use super::student_t::{Stretched, StudentT};
+use super::slices::Slices;
+use super::surface::{Shape, Stretched};
 use crate::elementary::{exp2, log2};
 
 /// Up to this a the excess is a difference of values from the shadowing table, which loses digits
@@ -59,36 +60,36 @@ impl ExcessShare {
     }
 }
 
-/// The slopes greater than a, of a lobe.
+/// The slopes greater than a, of a shape.
 pub(crate) struct SlopeBelowHorizon<'a> {
-    lobe: &'a StudentT,
+    slices: &'a Slices,
     a: f32,
 }
 
 impl<'a> SlopeBelowHorizon<'a> {
     /// For a view `rho` across and `depth` ≥ 0 below the horizon of the lobe.
-    pub(crate) fn new(lobe: &'a StudentT, rho: f32, depth: f32) -> Self {
-        Self { lobe, a: (depth / rho).min(DEEPEST) }
+    pub(crate) fn new(slices: &'a Slices, rho: f32, depth: f32) -> Self {
+        Self { slices, a: (depth / rho).min(DEEPEST) }
     }
 
     /// ∫ (x − a)⁺ p(x) dx.
     pub(crate) fn excess(&self, share: &ExcessShare) -> f32 {
-        let Self { lobe, a } = *self;
+        let Self { slices, a } = *self;
         if a > NEAR {
             // ∫ₐ^∞ x p(x) dx = M₀ (1 + s a²)^(−k), and k = 1/s − ½.
-            let exponent = (0.5 * lobe.s - 1.0) * lobe.normals.log2_growth(a * a);
+            let exponent = (0.5 * slices.s - 1.0) * slices.normals.log2_growth(a * a);
             // Products with a smaller number would be subnormal, and slow.
             let decay = exp2(f32x4::splat(exponent.max(-100.0))).to_array()[0];
-            return lobe.slices.first_moment() * decay * share.at(1.0 / (a * a));
+            return slices.first_moment() * decay * share.at(1.0 / (a * a));
         }
         // E[(X−a)⁺] = E[(X+a)⁺] − a.
         let above = Stretched { x: 1.0, y: 0.0, frame: 1.0, rho: 1.0, z: a };
-        1.0 / lobe.inverse_area(&above) - a
+        1.0 / slices.inverse_area(&above) - a
     }
 
     /// A slope, from a first random number in [0, 1) and as many more as needed.
     pub(crate) fn sample(&self, u: f32, more: &mut Numbers) -> Slope {
-        let (a, s) = (self.a, self.lobe.s);
+        let (a, s) = (self.a, self.slices.s);
         let base = 1.0 + s * a * a;
         // (1/s + a²)(e^(y/k) − 1) with 1/k = 2s/(2−s); y·2/(2−s) in the limit s = 0.
         let rate = 2.0 / (2.0 - s);

@@ -15,19 +15,23 @@
 use alloc::vec::Vec;
 
 use glam::Vec3;
-use microfacet_core::Masking;
 use microfacet_core::math::unit;
+use microfacet_core::{Masking, Roughness};
 use microfacet_tables::axis::hermite::split;
 use wide::f32x4;
 
 use super::batch::Batch;
+use super::delegate::lobe_by_reference;
 use super::distribution::{Facet, MicrofacetDistribution};
 use super::key::LobeKey;
 use super::lanes::first_three;
-use super::lanes::four::{LANES, coefficients, transpose};
+use super::lanes::four::{LANES, coefficients, sample_general, transpose};
+use super::lanes::one::draw;
 use super::lanes::views::{View, Views};
 use super::reflecting::Reflecting;
-use super::student_t::StudentT;
+use super::slices::Slices;
+use super::student_t::{StudentT, StudentTRef};
+use super::surface::{Scales, Shape, Surface};
 use super::tabulated::Tabulated;
 use crate::error::{BatchError, same_lengths};
 use crate::vector::vec3;
@@ -75,10 +79,20 @@ pub struct Bounded {
     limits: Vec<[f32; 2]>,
 }
 
+/// A [`Bounded`] lobe of another roughness, which borrows all else: the lobe of one hit.
+///
+/// It is `Copy`, and no memory is allocated for it: the limits depend on the shape alone. Made by
+/// [`Bounded::with_roughness`].
+#[derive(Clone, Copy, Debug)]
+pub struct BoundedRef<'a> {
+    lobe: StudentTRef<'a>,
+    limits: &'a [[f32; 2]],
+}
+
 /// The visible normals of one view without most of those that reflect it below the horizon.
 #[derive(Clone, Copy, Debug)]
 pub struct BoundedView<'a> {
-    lobe: &'a StudentT,
+    lobe: StudentTRef<'a>,
     v: Vec3,
     view: View,
     from: f32,
@@ -101,10 +115,10 @@ impl Bounded {
         // The exact numbers at all rows and, between the nodes of the limits, some slopes.
         let fine = BETWEEN * CELLS;
         let numbers = |row: usize| -> Vec<f64> {
-            let rows = lobe.row(row);
+            let rows = lobe.slices.one_row(row);
             let at = |i: usize| {
                 let x = -1.0 + i as f64 * (2.0 / fine as f64);
-                lobe.number_along(&rows, x, 1.0 - x.abs())
+                lobe.slices.number_along(&rows, x, 1.0 - x.abs())
             };
             (0..=fine).map(at).collect()
         };
@@ -156,16 +170,59 @@ impl Bounded {
         &self.lobe
     }
 
+    /// The same shape with another roughness: the lobe of a hit where a texture gives σ.
+    ///
+    /// σ is clamped as by [`StudentT::with_roughness`].
+    #[inline(always)]
+    #[must_use]
+    pub fn with_roughness(&self, roughness: impl Into<Roughness>) -> BoundedRef<'_> {
+        BoundedRef { lobe: self.lobe.with_roughness(roughness), limits: &self.limits }
+    }
+
+    /// This lobe, borrowed.
+    #[inline(always)]
+    #[must_use]
+    pub fn by_ref(&self) -> BoundedRef<'_> {
+        BoundedRef { lobe: self.lobe.by_ref(), limits: &self.limits }
+    }
+
     /// The normals of a view.
     #[inline(always)]
     #[must_use]
     pub fn at(&self, v: impl Into<[f32; 3]>) -> BoundedView<'_> {
+        self.by_ref().at(v)
+    }
+
+    /// [`BoundedRef::sample_reflecting_batch`] of this lobe.
+    ///
+    /// # Errors
+    /// [`BatchError`] if the slices are not of one length; nothing is then written.
+    pub fn sample_reflecting_batch<V: Copy + Into<[f32; 3]>, M: From<[f32; 3]>>(
+        &self,
+        v: &[V],
+        u: &[[f32; 2]],
+        m: &mut [M],
+        share: &mut [f32],
+    ) -> Result<(), BatchError> {
+        self.by_ref().sample_reflecting_batch(v, u, m, share)
+    }
+}
+
+impl<'a> BoundedRef<'a> {
+    /// The lobe, for evaluation.
+    #[must_use]
+    pub fn lobe(&self) -> StudentTRef<'a> {
+        self.lobe
+    }
+
+    /// The normals of a view.
+    #[inline(always)]
+    #[must_use]
+    pub fn at(&self, v: impl Into<[f32; 3]>) -> BoundedView<'a> {
         let v = vec3(v);
-        let view = if self.lobe.slices.peeled {
-            self.lobe.view::<true>(v)
-        } else {
-            self.lobe.view::<false>(v)
-        };
+        let surface = self.lobe.surface();
+        let view =
+            if surface.shape.peeled { surface.view::<true>(v) } else { surface.view::<false>(v) };
         let View { rho, z, at, .. } = view;
         let sin = f32x4::splat(v.x * v.x + v.y * v.y).sqrt();
         let [from, share] = self.intervals(rho, z, sin, at, |group, cells| {
@@ -173,7 +230,7 @@ impl Bounded {
             [limit(0), limit(1)]
         });
         let [from, share] = [from, share].map(|x| x.to_array()[0]);
-        BoundedView { lobe: &self.lobe, v, view, from, share }
+        BoundedView { lobe: self.lobe, v, view, from, share }
     }
 
     /// [`BoundedView::sample`] for each view and pair of numbers, into `m`, and
@@ -209,7 +266,7 @@ impl Bounded {
                 *share = at.share;
                 *n = [within(at.from, at.share, u[0]), u[1]];
             }
-            self.lobe.sample_all(v, numbers, m);
+            self.lobe.surface().sample_all(v, numbers, m);
         }
         Ok(())
     }
@@ -229,8 +286,9 @@ impl Bounded {
 
     #[inline(always)]
     fn intervals_of(&self, [vx, vy, vz]: [f32x4; 3]) -> [f32x4; 2] {
-        let (lobe, slices) = (&self.lobe, &self.lobe.slices);
-        let Views { rho, z, length, .. } = Views::new(vx * lobe.sigma_x, vy * lobe.sigma_y, vz);
+        let Surface { shape: slices, scales } = self.lobe.surface();
+        let [sx, sy] = scales.sigma;
+        let Views { rho, z, length, .. } = Views::new(vx * sx, vy * sy, vz);
         let [at, _] = slices.place::<true>(rho, z, length);
         self.intervals(rho, z, (vx * vx + vy * vy).sqrt(), at, |group, cells| {
             [0, 1].map(|end| {
@@ -251,13 +309,13 @@ impl Bounded {
         at: f32x4,
         limits: impl FnOnce(Nodes, [Nodes; 2]) -> [f32x4; 2],
     ) -> [f32x4; 2] {
-        let (lobe, slices) = (&self.lobe, &self.lobe.slices);
+        let Surface { shape: slices, scales } = self.lobe.surface();
         let group = Nodes::new(at * (1.0 / SHARED as f32));
         // tan θ ∓ 1/cos θ, the nearer end without cancellation, in slopes along the view's azimuth,
         // which are sin/ρ unit slopes along the stretched azimuth. Where ρ vanishes, so does sin,
         // and the azimuth is that of x.
         const LITTLE: f32 = 1e-25;
-        let (across, rho) = (sin + LITTLE, rho + LITTLE * lobe.sigma_x);
+        let (across, rho) = (sin + LITTLE, rho + LITTLE * scales.sigma[0]);
         let cells = [(-cos, 1.0 + sin), (1.0 + sin, cos)].map(|(x, z)| {
             let (x, z) = (x * across, z * rho);
             let half = 0.5 * CELLS as f32;
@@ -275,7 +333,7 @@ impl Bounded {
 }
 
 /// As the lobe, except for the normals that are drawn for reflection.
-impl MicrofacetDistribution for Bounded {
+impl MicrofacetDistribution for BoundedRef<'_> {
     #[inline(always)]
     fn d(&self, m: impl Into<[f32; 3]>) -> f32 {
         self.lobe.d(m)
@@ -291,9 +349,19 @@ impl MicrofacetDistribution for Bounded {
         self.lobe.sample_visible_normal(v, u)
     }
 
-    #[inline]
+    #[inline(always)]
     fn visible_normal_pdf(&self, v: impl Into<[f32; 3]>, m: impl Into<[f32; 3]>) -> f32 {
         self.lobe.visible_normal_pdf(v, m)
+    }
+
+    #[inline(always)]
+    fn reflection_weight(
+        &self,
+        v: impl Into<[f32; 3]>,
+        l: impl Into<[f32; 3]>,
+        masking: Masking,
+    ) -> f32 {
+        self.lobe.reflection_weight(v, l, masking)
     }
 
     #[inline(always)]
@@ -307,25 +375,26 @@ impl MicrofacetDistribution for Bounded {
         self.lobe.facet(v, m, l, masking)
     }
 
+    #[inline(always)]
     fn is_effectively_smooth(&self) -> bool {
         self.lobe.is_effectively_smooth()
     }
 }
 
-impl Reflecting for Bounded {
-    #[inline]
+impl Reflecting for BoundedRef<'_> {
+    #[inline(always)]
     fn sample_reflecting_normal(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> ([f32; 3], f32) {
         let at = self.at(v);
         (at.sample(u), at.share())
     }
 
-    #[inline]
+    #[inline(always)]
     fn reflecting_share(&self, v: impl Into<[f32; 3]>) -> f32 {
         self.at(v).share()
     }
 }
 
-impl Tabulated for Bounded {
+impl Tabulated for BoundedRef<'_> {
     fn table_pdf(&self, v: impl Into<[f32; 3]>, m: impl Into<[f32; 3]>) -> f32 {
         self.lobe.table_pdf(v, m)
     }
@@ -335,11 +404,11 @@ impl Tabulated for Bounded {
     }
 
     fn bytes(&self) -> usize {
-        self.lobe.bytes() + size_of_val(&self.limits[..])
+        self.lobe.bytes() + size_of_val(self.limits)
     }
 }
 
-impl Batch for Bounded {
+impl Batch for BoundedRef<'_> {
     fn sample_batch<V: Copy + Into<[f32; 3]>, M: From<[f32; 3]>>(
         &self,
         v: &[V],
@@ -357,6 +426,8 @@ impl Batch for Bounded {
         self.lobe.g1_batch(v, g1)
     }
 }
+
+lobe_by_reference!(Bounded);
 
 /// Nodes below four coordinates, and the weights of the next nodes.
 #[derive(Clone, Copy)]
@@ -390,11 +461,13 @@ impl BoundedView<'_> {
     pub fn sample(&self, u: [f32; 2]) -> [f32; 3] {
         let (lobe, v) = (self.lobe, self.v);
         let u = [within(self.from, self.share, u[0]), u[1]];
-        if lobe.slices.peeled {
+        let Surface { shape, scales: Scales { sigma, .. } } = lobe.surface();
+        if shape.peeled {
             return lobe.sample_visible_normal(v, u);
         }
-        let m = lobe.draw::<false>(&self.view, u, [lobe.sigma_x, lobe.sigma_y], |m| m);
-        m.map_or_else(|| lobe.sample_general(v.x, v.y, v.z, u), first_three).to_array()
+        let m = draw::<_, false>(shape, &self.view, u, sigma, |m| m);
+        let general = || sample_general::<&Slices>(shape, sigma, v.x, v.y, v.z, u);
+        m.map_or_else(general, first_three).to_array()
     }
 
     /// Probability that an unbounded sample lies in the interval, in (0, 1]: the factor on a
@@ -436,14 +509,15 @@ mod tests {
             let rows = lobe.slices.rows as f32;
             for i in 0..331 {
                 let at = rows * i as f32 / 330.0;
-                let table = lobe.rows_at(at).unwrap();
+                let table = lobe.slices.rows_at(at).unwrap();
                 let view = Nodes::new(f32x4::splat(at / SHARED as f32)).at(0);
                 for j in 0..=500 {
                     let x = -1.0 + j as f32 / 250.0;
-                    let exact = lobe.number_along(&table, x.into(), (1.0 - x.abs()).into());
+                    let exact = lobe.slices.number_along(&table, x.into(), (1.0 - x.abs()).into());
                     let half = 0.5 * CELLS as f32;
                     let slope = Nodes::new(f32x4::splat(x * half + half)).at(0);
-                    let [low, high] = [0, 1].map(|end| f64::from(bounded.limit(view, slope, end)));
+                    let [low, high] =
+                        [0, 1].map(|end| f64::from(bounded.by_ref().limit(view, slope, end)));
                     assert!(low <= exact && exact <= high, "{gamma} {at} {x}: {low} {exact}");
                     (excess, count) = (excess + (high - low), count + 1);
                 }

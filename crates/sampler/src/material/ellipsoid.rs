@@ -10,16 +10,20 @@ use wide::f32x4;
 
 use super::batch::Batch;
 use super::below_horizon::{ExcessShare, Numbers, SlopeBelowHorizon};
+use super::delegate::lobe_by_reference;
 use super::distribution::{Facet, MicrofacetDistribution, SMOOTH, is_hidden, visible_density};
 use super::horizon::{HORIZON, above_horizon};
 use super::key::LobeKey;
-use super::lanes::views::Views;
+use super::lanes::one::draw;
+use super::lanes::views::{View, Views};
 use super::lanes::{first_three, sum};
 use super::matrix::{ENTRIES, Matrix};
 use super::reflecting::Reflecting;
-use super::student_t::{Stretched, StudentT};
+use super::slices::Slices;
+use super::student_t::StudentT;
+use super::surface::{Shape, Stretched, Surface};
 use super::tabulated::Tabulated;
-use crate::error::MaterialError;
+use crate::error::{BatchError, MaterialError};
 use crate::vector::vec3;
 
 /// An Ellipsoid lobe: that of Walter et al. 2015 (supplemental material of
@@ -44,11 +48,20 @@ use crate::vector::vec3;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Ellipsoid {
-    /// The lobe with σ = 1.
-    lobe: StudentT,
+    slices: Slices,
     matrix: Matrix,
     /// For views below the lobe's horizon.
     below: ExcessShare,
+}
+
+/// An [`Ellipsoid`] of another matrix, which borrows all else: the lobe of one hit.
+///
+/// It is `Copy`, and no memory is allocated for it. Made by [`Ellipsoid::with_skew`].
+#[derive(Clone, Copy, Debug)]
+pub struct EllipsoidRef<'a> {
+    slices: &'a Slices,
+    matrix: Matrix,
+    below: &'a ExcessShare,
 }
 
 impl Ellipsoid {
@@ -56,22 +69,57 @@ impl Ellipsoid {
     pub const SIGMAS: [f64; 2] = ENTRIES;
 
     pub(crate) fn new(lobe: StudentT, skew: Skew) -> Result<Self, MaterialError> {
-        let below = ExcessShare::new(f64::from(lobe.s));
-        Ok(Self { lobe: lobe.with_roughness(1.0)?, matrix: skew.try_into()?, below })
+        let below = ExcessShare::new(f64::from(lobe.slices.s));
+        Ok(Self { slices: lobe.slices, matrix: skew.try_into()?, below })
     }
 
     /// The shape γ.
     #[must_use]
     pub fn gamma(&self) -> f64 {
-        self.lobe.gamma()
+        self.slices.gamma
     }
 
-    /// The same lobe with another matrix; the tables are not read again.
+    /// The same shape with another matrix: the lobe of a hit where textures give its roughness,
+    /// turn or tilt.
     ///
     /// # Errors
     /// [`MaterialError::Sigma`] for a roughness that leaves single precision.
-    pub fn with_skew(&self, skew: Skew) -> Result<Self, MaterialError> {
-        Ok(Self { matrix: skew.try_into()?, ..self.clone() })
+    #[inline]
+    pub fn with_skew(&self, skew: Skew) -> Result<EllipsoidRef<'_>, MaterialError> {
+        Ok(EllipsoidRef { matrix: skew.try_into()?, ..self.by_ref() })
+    }
+
+    /// This lobe, borrowed.
+    #[inline(always)]
+    #[must_use]
+    pub fn by_ref(&self) -> EllipsoidRef<'_> {
+        EllipsoidRef { slices: &self.slices, matrix: self.matrix, below: &self.below }
+    }
+}
+
+/// A direction of unit space, located.
+#[inline(always)]
+fn stretched(w: Vec3) -> Stretched {
+    Stretched::new(w.to_array())
+}
+
+impl EllipsoidRef<'_> {
+    /// The shape γ.
+    #[must_use]
+    pub fn gamma(&self) -> f64 {
+        self.slices.gamma
+    }
+
+    /// The lobe with σ = 1.
+    #[inline(always)]
+    fn unit(&self) -> Surface<&Slices> {
+        Surface::new(self.slices, [1.0; 2])
+    }
+
+    /// D of a normal of unit space, from the square of the length that it had in the tangent frame.
+    #[inline(always)]
+    fn d_of_unit(&self, m: Vec3, length2: f32, scale: f32) -> f32 {
+        self.slices.d(m.x * m.x + m.y * m.y, m.z * m.z, length2, scale)
     }
 
     /// Uv, the direction in unit space.
@@ -96,7 +144,7 @@ impl Ellipsoid {
     /// 1/(area of the microsurface seen along v), for views above and below the lobe's horizon.
     #[inline(always)]
     fn inverse_area(&self, w: Vec3, at: &Stretched) -> f32 {
-        if w.z >= 0.0 { self.lobe.inverse_area(at) } else { self.inverse_area_below(w, at) }
+        if w.z >= 0.0 { self.slices.inverse_area(at) } else { self.inverse_area_below(w, at) }
     }
 
     /// G2(v, l)·area/(v·n) from (v·n)/area, which is above 1 where G1(v) is clamped.
@@ -108,12 +156,12 @@ impl Ellipsoid {
 
     #[cold]
     fn inverse_area_below(&self, w: Vec3, at: &Stretched) -> f32 {
-        let area = at.rho * SlopeBelowHorizon::new(&self.lobe, at.rho, -w.z).excess(&self.below);
+        let area = at.rho * SlopeBelowHorizon::new(self.slices, at.rho, -w.z).excess(self.below);
         // Finite, since a density of 0 times ∞ would be NaN.
         if area > 0.0 { saturated(1.0 / area) } else { f32::MAX }
     }
 
-    /// The lobe's [common case](StudentT::draw) between U and Uᵀ; `None` elsewhere, and
+    /// The lobe's [common case](draw) between U and Uᵀ; `None` elsewhere, and
     /// for views below the lobe's horizon.
     ///
     /// A normal takes 1.2 times as long as one of the untilted anisotropic lobe, 1.1 to 1.2 times
@@ -134,12 +182,8 @@ impl Ellipsoid {
                 + lanes(mz) * f32x4::new([x, y, 1.0, 0.0])
         };
         let xy = f32x4::new([w.x, w.y, 0.0, 0.0]);
-        let m = self.lobe.draw::<HEAVY>(
-            &self.lobe.stretched::<HEAVY>(xy, w.z),
-            u,
-            [1.0; 2],
-            to_tangent,
-        )?;
+        let view = View::new::<_, HEAVY>(self.slices, xy, w.z);
+        let m = draw::<_, HEAVY>(self.slices, &view, u, [1.0; 2], to_tangent)?;
         // Refused where an almost singular matrix has taken squares out of range, so that the
         // length is not 1 (also where z was as long as the rest before it shrank), and for a normal
         // below the smallest cosine.
@@ -161,12 +205,12 @@ impl Ellipsoid {
         let w = self.to_unit(Vec3::new(x, y, z));
         let [mx, my, mz] = if w.z >= 0.0 {
             let [x, y, z] = w.to_array().map(f32x4::splat);
-            let m = self.lobe.unnormalised(Views::new(x, y, z), u, [1.0; 2]);
+            let m = self.unit().unnormalised(Views::new(x, y, z), u);
             m.map(|m| m.to_array()[0])
         } else {
-            let view = self.lobe.stretch(w);
+            let view = stretched(w);
             let along = self.sample_below(w, &view, u);
-            self.lobe.unit_normal(&view, along, self.lobe.sample_across(u[1])).to_array()
+            self.unit().unit_normal(&view, along, self.unit().sample_across(u[1])).to_array()
         };
         let Matrix { p, q, r, x, y } = self.matrix;
         let m = Vec3::new(p * mx + q * my + x * mz, r * my + y * mz, mz);
@@ -176,11 +220,11 @@ impl Ellipsoid {
 
     #[cold]
     fn sample_below(&self, w: Vec3, view: &Stretched, u: [f32; 2]) -> Slope {
-        SlopeBelowHorizon::new(&self.lobe, view.rho, -w.z).sample(u[0], &mut Numbers::new(u))
+        SlopeBelowHorizon::new(self.slices, view.rho, -w.z).sample(u[0], &mut Numbers::new(u))
     }
 }
 
-impl MicrofacetDistribution for Ellipsoid {
+impl MicrofacetDistribution for EllipsoidRef<'_> {
     #[inline]
     fn d(&self, m: impl Into<[f32; 3]>) -> f32 {
         let m = vec3(m);
@@ -188,7 +232,7 @@ impl MicrofacetDistribution for Ellipsoid {
             return 0.0;
         }
         let (unit, scale) = self.normal_to_unit(m);
-        self.lobe.d_of_unit(unit, 1.0, FRAC_1_PI * scale)
+        self.d_of_unit(unit, 1.0, FRAC_1_PI * scale)
     }
 
     /// Smith masking G1(v) = min(1, (v·n)/area); 0 at and below the horizon.
@@ -201,13 +245,13 @@ impl MicrofacetDistribution for Ellipsoid {
             return 0.0;
         }
         let w = self.to_unit(v);
-        (v.z * self.inverse_area(w, &self.lobe.stretch(w))).min(1.0)
+        (v.z * self.inverse_area(w, &stretched(w))).min(1.0)
     }
 
     #[inline(always)]
     fn sample_visible_normal(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> [f32; 3] {
         let v = vec3(v);
-        if self.lobe.slices.peeled {
+        if self.slices.peeled {
             return self.sample_heavy(v.x, v.y, v.z, u).to_array();
         }
         let m = self.sample_fast::<false>(v, u);
@@ -218,7 +262,7 @@ impl MicrofacetDistribution for Ellipsoid {
     fn visible_normal_pdf(&self, v: impl Into<[f32; 3]>, m: impl Into<[f32; 3]>) -> f32 {
         let (v, m) = (vec3(v), vec3(m));
         let w = self.to_unit(v);
-        visible_density(v.dot(m), self.d(m), self.inverse_area(w, &self.lobe.stretch(w)))
+        visible_density(v.dot(m), self.d(m), self.inverse_area(w, &stretched(w)))
     }
 
     /// G2(v, l)·area/(v·n) ≤ 1.
@@ -234,7 +278,7 @@ impl MicrofacetDistribution for Ellipsoid {
             return 0.0;
         }
         let w = self.to_unit(v);
-        self.weight(v.z * self.inverse_area(w, &self.lobe.stretch(w)), l, masking)
+        self.weight(v.z * self.inverse_area(w, &stretched(w)), l, masking)
     }
 
     /// From `visible_normal_pdf` and `reflection_weight`, with the area of the view computed once.
@@ -251,22 +295,22 @@ impl MicrofacetDistribution for Ellipsoid {
             return Facet::default();
         }
         let w = self.to_unit(v);
-        let inverse_area = self.inverse_area(w, &self.lobe.stretch(w));
+        let inverse_area = self.inverse_area(w, &stretched(w));
         let (unit, scale) = self.normal_to_unit(m);
-        let d = self.lobe.d_of_unit(unit, m.dot(m), FRAC_1_PI * scale);
+        let d = self.d_of_unit(unit, m.dot(m), FRAC_1_PI * scale);
         let weight = self.weight(v.z * inverse_area, l, masking);
         Facet { density: saturated(d * inverse_area), weight }
     }
 
     fn is_effectively_smooth(&self) -> bool {
         let Matrix { p, q, r, x, y } = self.matrix;
-        self.lobe.is_smooth(p.max(q.abs()).max(r)) && x.abs().max(y.abs()) < SMOOTH
+        self.slices.is_smooth(p.max(q.abs()).max(r)) && x.abs().max(y.abs()) < SMOOTH
     }
 }
 
-impl Reflecting for Ellipsoid {}
+impl Reflecting for EllipsoidRef<'_> {}
 
-impl Tabulated for Ellipsoid {
+impl Tabulated for EllipsoidRef<'_> {
     /// That of the untransformed lobe times the ratio of solid angles. For views below the lobe's
     /// horizon samples have the analytic density.
     fn table_pdf(&self, v: impl Into<[f32; 3]>, m: impl Into<[f32; 3]>) -> f32 {
@@ -282,7 +326,7 @@ impl Tabulated for Ellipsoid {
         let length = sqrt(unit.dot(unit));
         // The ratio of solid angles, scale over the length cubed.
         let stretch = scale / length / (length * length);
-        let density = self.lobe.density_of_samples(w, unit / length) * stretch;
+        let density = self.unit().density_of_samples(w, unit / length) * stretch;
         // For a normal far from unit length powers of the length are out of range, and 0·∞ is NaN.
         if density > 0.0 { density.min(f32::MAX) } else { 0.0 }
     }
@@ -292,8 +336,10 @@ impl Tabulated for Ellipsoid {
     }
 
     fn bytes(&self) -> usize {
-        self.lobe.bytes()
+        self.slices.bytes()
     }
 }
 
-impl Batch for Ellipsoid {}
+impl Batch for EllipsoidRef<'_> {}
+
+lobe_by_reference!(Ellipsoid);

@@ -12,7 +12,7 @@ use super::horizon::{above_horizon, face};
 use super::key::LobeKey;
 use super::reflecting::Reflecting;
 use super::roughness::checked;
-use super::student_t::{LONG, LONGEST, SHORT};
+use super::surface::{LONG, LONGEST, SHORT};
 use super::tabulated::Tabulated;
 use crate::elementary::turn;
 use crate::error::MaterialError;

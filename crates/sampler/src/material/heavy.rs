@@ -25,6 +25,12 @@ pub(super) const CELLS_PER_ROW: usize = 2;
 pub(crate) struct Heavy {
     /// The share of the visible area, by cell of the view coordinate.
     pub(crate) shares: Vec<Cell>,
+    pub(crate) tail: Tail,
+}
+
+/// The slopes of the heavy part.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Tail {
     /// 1/(2γ−3).
     pub(crate) exponent: f32,
     pub(crate) root_s: f32,
@@ -45,7 +51,8 @@ impl Heavy {
         };
         let mut shares: Vec<Cell> = (0..cells).map(cell).collect();
         shares.push([share(1.0) as f32, 0.0, 0.0, 0.0]);
-        Self { shares, exponent: (1.0 / (2.0 * gamma - 3.0)) as f32, root_s: libm::sqrt(s) as f32 }
+        let exponent = (1.0 / (2.0 * gamma - 3.0)) as f32;
+        Self { shares, tail: Tail { exponent, root_s: libm::sqrt(s) as f32 } }
     }
 
     /// The share at a view coordinate in rows, to rounding in [0, 1].
@@ -56,6 +63,19 @@ impl Heavy {
         cell.map_or(0.0, |cell| cubic(cell, w.to_array()[0]))
     }
 
+    /// The shares at four view coordinates in rows.
+    #[inline(always)]
+    pub(crate) fn shares(
+        &self,
+        at: f32x4,
+        look_up: impl FnOnce(&[Cell], [i32; 4]) -> [f32x4; 4],
+    ) -> f32x4 {
+        let (cell, w) = split(at * CELLS_PER_ROW as f32);
+        cubic_lanes(look_up(&self.shares, cell.to_array()), w)
+    }
+}
+
+impl Tail {
     /// Half of x, and z, of the heavy part's slopes x : z at numbers descending from 1 to 0, and a
     /// factor on z.
     ///
@@ -70,17 +90,6 @@ impl Heavy {
         let x = ((1.0 - zeta) * (1.0 + zeta)).fast_max(f32x4::ZERO).sqrt();
         let large = zeta.fast_max(f32x4::splat(LEAST));
         [x * 0.5, large * self.root_s, zeta / large]
-    }
-
-    /// The shares at four view coordinates in rows.
-    #[inline(always)]
-    pub(crate) fn shares(
-        &self,
-        at: f32x4,
-        look_up: impl FnOnce(&[Cell], [i32; 4]) -> [f32x4; 4],
-    ) -> f32x4 {
-        let (cell, w) = split(at * CELLS_PER_ROW as f32);
-        cubic_lanes(look_up(&self.shares, cell.to_array()), w)
     }
 }
 

@@ -4,6 +4,8 @@
 //! which is computed as (b/z²)^(2−γ)/b²: the power is small for γ near 2 and 0 for γ = 2, and
 //! towards Beckmann the logarithm of b/z² = 1 + s r²/z² keeps the digits of a small s.
 
+use microfacet_core::saturated;
+
 use crate::elementary::{log2_growth, scaled_power_of_growth};
 
 /// D of one shape.
@@ -34,6 +36,13 @@ impl Normals {
         let part = self.s * r2;
         let scale = length2 / (z2 + part).max(f32::MIN_POSITIVE);
         scaled_power_of_growth(z2, part, self.power, scale)
+    }
+
+    /// D of a normal above the horizon, from what [`root`](Self::root) takes and 1/(πσxσy).
+    #[inline(always)]
+    pub(crate) fn d(&self, r2: f32, z2: f32, length2: f32, scale: f32) -> f32 {
+        let root = self.root(r2, z2, length2);
+        saturated((scale * root) * root)
     }
 
     /// log₂(1 + s x²)/s of a squared unit slope, x² log₂ e in the limit s = 0.

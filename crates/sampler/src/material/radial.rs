@@ -17,6 +17,7 @@ use super::reflecting::Reflecting;
 use super::roughness::checked;
 use super::slices::{Slice, Slices};
 use super::student_t::StudentT;
+use super::surface::Shape;
 use super::tabulated::Tabulated;
 use crate::error::MaterialError;
 use crate::vector::vec3;
@@ -92,7 +93,10 @@ impl Radial {
         let mut across = conditional.nodes;
         across.chunks_exact_mut(width).for_each(make_monotone);
         Ok(Self {
-            plane: StudentT::for_radial(sigma, Slices::new([shadowing, slope], ROUND)),
+            plane: StudentT::new(
+                [sigma; 2],
+                Slices::new([shadowing, slope], 1.0 + 1.0 / ROUND, ROUND),
+            ),
             across,
             cells: width - 1,
             rows: conditional.axes[0].nodes.len() - 1,
@@ -166,20 +170,23 @@ impl MicrofacetDistribution for Radial {
     #[inline]
     fn sample_visible_normal(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> [f32; 3] {
         let v = vec3(v);
-        let view = self.plane.stretch(v);
-        let x = self.plane.sample_slope(&view, u[0]);
-        self.plane.assemble(&view, x, self.sample_across(x, u[1])).to_array()
+        let plane = self.plane.surface();
+        let view = plane.stretch(v);
+        let x = plane.sample_slope(&view, u[0]);
+        plane.assemble(&view, x, self.sample_across(x, u[1])).to_array()
     }
 
     /// From the tables' D and G1.
     #[inline]
     fn visible_normal_pdf(&self, v: impl Into<[f32; 3]>, m: impl Into<[f32; 3]>) -> f32 {
         let (v, m) = (vec3(v), vec3(m));
-        visible_density(v.dot(m), self.d(m), self.plane.inverse_area(&self.plane.stretch(v)))
+        let plane = self.plane.surface();
+        let inverse_area = plane.shape.inverse_area(&plane.stretch(v));
+        visible_density(v.dot(m), self.d(m), inverse_area)
     }
 
     fn is_effectively_smooth(&self) -> bool {
-        self.plane.is_smooth(self.sigma())
+        self.plane.is_effectively_smooth()
     }
 }
 

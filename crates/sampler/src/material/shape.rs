@@ -61,11 +61,11 @@ impl ShapeTables {
         let heavy = || HeavyTables {
             shares: slices.heavy.shares.clone(),
             cells_per_row: CELLS_PER_ROW as f32,
-            exponent: slices.heavy.exponent,
-            root_s: slices.heavy.root_s,
+            exponent: slices.heavy.tail.exponent,
+            root_s: slices.heavy.tail.root_s,
         };
         Self {
-            normals: [lobe.normals.s, lobe.normals.power],
+            normals: [slices.normals.s, slices.normals.power],
             kappa: slices.kappa,
             masking_crowded: slices.shadowing_view.crowded,
             masking_cells: slices.shadowing_cells,

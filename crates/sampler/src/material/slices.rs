@@ -2,16 +2,22 @@
 
 use alloc::vec::Vec;
 
-use microfacet_core::math::sqrt;
 use microfacet_core::shape::s_of_gamma;
 use microfacet_tables::axis::half_tangent::Lines;
-use microfacet_tables::axis::hermite::{Cell, Node, cubic_cells, make_monotone};
+use microfacet_tables::axis::hermite::{
+    Cell, Node, cubic, cubic_cells, cubic_lanes, horner, horner_lanes, make_monotone,
+};
 use microfacet_tables::axis::{HalfTangent, MirroredRoot, Rational};
 use microfacet_tables::{Axis, Kind, Mapping, Table, Weights};
 use wide::f32x4;
 
 use super::coverage::{self, end_weights, shape_weights};
-use super::heavy::Heavy;
+use super::heavy::{Heavy, Tail};
+use super::lanes::four::{LANES, coefficients};
+use super::lanes::one::pair;
+use super::lanes::swap_halves;
+use super::normals::Normals;
+use super::surface::Shape;
 use crate::error::MaterialError;
 
 /// A (value, slope) table without its γ axis.
@@ -62,8 +68,13 @@ fn pairs(values: &[f32]) -> Vec<Node> {
     values.chunks_exact(2).map(|node| [node[0], node[1]]).collect()
 }
 
+/// All that lookups read of one shape, whatever the roughness.
 #[derive(Clone, Debug)]
 pub(crate) struct Slices {
+    /// γ and s = 1/(γ−1), and D.
+    pub(crate) gamma: f64,
+    pub(crate) s: f32,
+    pub(crate) normals: Normals,
     /// G1/q over the number of cells, by cell of the view coordinate, so that the coordinate in
     /// cells needs no further scaling.
     pub(crate) shadowing: Vec<Cell>,
@@ -98,7 +109,7 @@ impl Slices {
             |kinds| find(tables, kinds, gamma, s).map(|(table, weights)| Slice::at(table, weights));
         let [shadowing, slope, across] = coverage::LOBE.map(find);
         let (shadowing, slope, across) = (shadowing?, slope?, across?);
-        let mut slices = Self::new([shadowing, slope], s);
+        let mut slices = Self::new([shadowing, slope], gamma, s);
         slices.across = across.nodes;
         spread(&mut slices.across);
         make_monotone(&mut slices.across);
@@ -113,7 +124,7 @@ impl Slices {
     }
 
     /// From the slices of G1 and of in-plane slopes; slopes across stay empty.
-    pub(crate) fn new([shadowing, slope]: [Slice; 2], s: f64) -> Self {
+    pub(crate) fn new([shadowing, slope]: [Slice; 2], gamma: f64, s: f64) -> Self {
         let (Mapping::Rational(shadowing_view), [.., view, numbers]) =
             (shadowing.axes[shadowing.axes.len() - 1].mapping, slope.axes)
         else {
@@ -131,6 +142,9 @@ impl Slices {
         }
         slopes.resize(slopes.len() + numbers.nodes.len() * 2 + 1, [0.0; 2]);
         Self {
+            gamma,
+            s: s_of_gamma(gamma) as f32,
+            normals: Normals::new(s_of_gamma(gamma)),
             shadowing: cubic_cells(&shadowing.nodes, 1.0 / shadowing_cells as f64),
             shadowing_cells: shadowing_cells as f32,
             kappa: shadowing_view.kappa(s) as f32,
@@ -146,34 +160,6 @@ impl Slices {
             scales: [0.0; 2],
             heavy: Heavy::default(),
         }
-    }
-
-    #[inline(always)]
-    pub(crate) fn half(&self) -> u32 {
-        self.half_cells as u32 + 1
-    }
-
-    /// The coordinate of four views in rows, and 1 − τ. The same bits whatever `HEAVY` is, which
-    /// must be true of a peeled table.
-    #[inline(always)]
-    pub(crate) fn place<const HEAVY: bool>(
-        &self,
-        rho: f32x4,
-        z: f32x4,
-        length: f32x4,
-    ) -> [f32x4; 2] {
-        if HEAVY && self.peeled {
-            self.lines.of_views::<true>(rho, z, length)
-        } else {
-            self.lines.of_views::<false>(rho, z, length)
-        }
-    }
-
-    /// The coordinate of one view in rows, equal to the sampler's to rounding.
-    #[inline(always)]
-    pub(crate) fn row(&self, rho: f32, z: f32) -> f32 {
-        let [rho, z, length] = [rho, z, sqrt(rho * rho + z * z)].map(f32x4::splat);
-        self.place::<true>(rho, z, length)[0].to_array()[0]
     }
 
     /// M₀ρ/area at the coordinate t of a view, from the table of G1.
@@ -200,6 +186,126 @@ impl Slices {
         size_of_val(&self.shadowing[..])
             + size_of_val(&self.slope[..])
             + size_of_val(&self.across_cells[..])
+    }
+}
+
+impl Shape for &Slices {
+    type Seed = Self;
+
+    #[inline(always)]
+    fn seed(self) -> Self {
+        self
+    }
+
+    #[inline(always)]
+    fn of_seed(seed: Self) -> Self {
+        seed
+    }
+
+    #[inline(always)]
+    fn s(self) -> f32 {
+        self.s
+    }
+
+    #[inline(always)]
+    fn peeled(self) -> bool {
+        self.peeled
+    }
+
+    #[inline(always)]
+    fn lines(self) -> Lines {
+        self.lines
+    }
+
+    #[inline(always)]
+    fn half(self) -> u32 {
+        self.half_cells as u32 + 1
+    }
+
+    #[inline(always)]
+    fn scales(self) -> [f32; 2] {
+        self.scales
+    }
+
+    #[inline(always)]
+    fn reads(self, high: usize, across: usize) -> bool {
+        high + 2 <= self.slope.len() && across < self.across_cells.len()
+    }
+
+    #[inline(always)]
+    fn rows(self, low: usize, high: usize) -> [f32x4; 2] {
+        let nodes = &self.slope[..];
+        if high + 2 > nodes.len() {
+            return [f32x4::splat(f32::NAN); 2];
+        }
+        [pair(nodes, low), pair(nodes, high)]
+    }
+
+    #[inline(always)]
+    fn across(self, cell: usize, w: f32) -> f32 {
+        self.across_cells.get(cell).map_or(f32::NAN, |cell| cubic(cell, w))
+    }
+
+    #[inline(always)]
+    fn across_lanes(self, cells: [i32; LANES], w: f32x4) -> f32x4 {
+        cubic_lanes(coefficients(&self.across_cells, cells), w)
+    }
+
+    #[inline(always)]
+    fn share(self, at: f32) -> f32 {
+        self.heavy.share(at)
+    }
+
+    #[inline(always)]
+    fn shares(self, at: f32x4) -> f32x4 {
+        self.heavy.shares(at, coefficients)
+    }
+
+    #[inline(always)]
+    fn tail(self) -> Tail {
+        self.heavy.tail
+    }
+
+    #[inline(always)]
+    fn kappa(self) -> f32 {
+        self.kappa
+    }
+
+    #[inline(always)]
+    fn masking_view(self) -> (Rational, f32) {
+        (self.shadowing_view, self.shadowing_cells)
+    }
+
+    #[inline(always)]
+    fn masking(self, cell: usize, w: f32) -> Option<f32> {
+        Some(horner(self.shadowing.get(cell)?, w))
+    }
+
+    #[inline(always)]
+    fn masking_of_two(self, cells: [usize; 2], w: f32x4) -> Option<f32x4> {
+        let [a, b] = cells;
+        let (a, b) = (self.shadowing.get(a)?, self.shadowing.get(b)?);
+        // c₀ and c₁ of both, then c₂ and c₃.
+        let (a, b) = (f32x4::new(*a), f32x4::new(*b));
+        let (low, high) = (a.unpack_lo(b), a.unpack_hi(b));
+        let ([wa, wb, ..], square) = (w.to_array(), w * w);
+        let terms = (low + square * high) * f32x4::new([1.0, 1.0, wa, wb]);
+        Some(terms + swap_halves(terms))
+    }
+
+    #[inline(always)]
+    fn masking_lanes(self, cells: [i32; LANES], w: f32x4) -> f32x4 {
+        horner_lanes(coefficients(&self.shadowing, cells), w)
+    }
+
+    #[inline(always)]
+    fn d(self, r2: f32, z2: f32, length2: f32, scale: f32) -> f32 {
+        self.normals.d(r2, z2, length2, scale)
+    }
+
+    #[inline(always)]
+    fn first_moment(self) -> f32 {
+        Slices::first_moment(self)
     }
 }
 

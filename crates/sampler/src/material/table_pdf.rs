@@ -18,8 +18,9 @@ use microfacet_tables::axis::MirroredRoot;
 use microfacet_tables::axis::half_tangent::{ends, ends_and_rate, slope_at};
 use microfacet_tables::axis::hermite::{Cubic, Node, split};
 
-use super::distribution::MicrofacetDistribution;
-use super::student_t::{Stretched, StudentT};
+use super::slices::Slices;
+use super::student_t::StudentT;
+use super::surface::{Shape, Stretched, Surface};
 use crate::elementary::{exp2, log2};
 use crate::vector::vec3;
 
@@ -119,36 +120,37 @@ impl Place {
     }
 }
 
-impl StudentT {
+impl Surface<&Slices> {
     /// [`table_pdf`](crate::lobe::Tabulated::table_pdf) of a normal that faces the view. This is
     /// not checked, since rounding may put the slope of a drawn normal behind the silhouette.
-    pub(crate) fn density_of_samples(&self, v: Vec3, m: Vec3) -> f32 {
+    pub(crate) fn density_of_samples(self, v: Vec3, m: Vec3) -> f32 {
         if !(m.z > 0.0) {
             return 0.0;
         }
         let view = self.stretch(v);
-        let at = self.coordinate(&view);
-        let Some(rows) = self.rows_at(at) else { return 0.0 };
+        let at = self.shape.coordinate(&view);
+        let Some(rows) = self.shape.rows_at(at) else { return 0.0 };
         let slopes = self.unit_slopes(&view, m);
         let UnitSlopes { x, z, y } = slopes;
         let ([low, high], rate) = ends_and_rate(x, z);
-        let (half, cell) = self.cell_along(&rows, [low, high]);
+        let (half, cell) = self.shape.cell_along(&rows, [low, high]);
         let place = cell.place();
         let mut along = place.density() * rate;
         let mut heavy = 0.0;
-        if self.slices.peeled {
-            heavy = f64::from(unit(self.slices.heavy.share(at)));
-            along = (1.0 - heavy) * along + heavy * self.heavy_density(&slopes);
+        if self.shape.peeled {
+            heavy = f64::from(unit(self.shape.heavy.share(at)));
+            along = (1.0 - heavy) * along + heavy * self.shape.heavy_density(&slopes);
         }
-        let s = f64::from(self.s);
+        let s = f64::from(self.shape.s);
         let norm = sqrt64(z * z + s * x * x);
         let ([_, g], rate) = ends_and_rate(y.abs(), norm);
-        let place_across = self.cell_across(g).place();
+        let place_across = self.shape.cell_across(g).place();
         let across = place_across.density() * rate;
         // p(x, y) = p(x) p(t)/√(1 + s x²); `along` is per unit of x/z. Slopes in the tangent frame
         // scale by σ, and dm = cos³θ per slope area.
         let cos = f64::from(m.z);
-        let area = norm * f64::from(self.sigma_x) * f64::from(self.sigma_y) * (cos * cos * cos);
+        let [sx, sy] = self.scales.sigma.map(f64::from);
+        let area = norm * sx * sy * (cos * cos * cos);
         let density = along * across * z / area;
         let density = if density > 0.0 { density.min(f64::from(f32::MAX)) as f32 } else { 0.0 };
         // The heavy part extends beyond the end of a peeled table.
@@ -166,43 +168,36 @@ impl StudentT {
     /// view.
     #[cold]
     #[inline(never)]
-    fn at_an_end(&self, density: f32, v: Vec3, m: Vec3) -> f32 {
+    fn at_an_end(self, density: f32, v: Vec3, m: Vec3) -> f32 {
         density.max(self.visible_normal_pdf(v, m))
     }
 
-    /// The slopes at which the tabulated density ([`table_pdf`](crate::lobe::Tabulated::table_pdf))
-    /// of a view has joints: unit slopes x in the plane of incidence, ascending, and t ≥ 0 across
-    /// it.
-    ///
-    /// Between joints the density of the samples is smooth, so a quadrature that divides there
-    /// converges fast. x may end at ±∞.
-    #[must_use]
-    pub fn table_joints(&self, v: impl Into<[f32; 3]>) -> [Vec<f64>; 2] {
-        self.joints(&self.stretch(vec3(v)))
-    }
-
-    fn joints(&self, view: &Stretched) -> [Vec<f64>; 2] {
-        let Some(rows) = self.rows_at(self.coordinate(view)) else { return Default::default() };
-        let half = self.slices.half_cells + 1;
+    fn joints(self, view: &Stretched) -> [Vec<f64>; 2] {
+        let Some(rows) = self.shape.rows_at(self.shape.coordinate(view)) else {
+            return Default::default();
+        };
+        let half = self.shape.half_cells + 1;
         let slope = |g: f64, sign: f64| {
             let [x, z] = slope_at(g);
             sign * x / z
         };
         let away = (0..half).map(|i| slope(f64::from(rows.node(i)[0]), -1.0));
         let towards = (0..half).rev().map(|i| slope(f64::from(rows.node(half + i)[0]), 1.0));
-        let across = self.slices.across.iter().rev().map(|node| slope(f64::from(node[0]), 1.0));
+        let across = self.shape.across.iter().rev().map(|node| slope(f64::from(node[0]), 1.0));
         [away.chain(towards).collect(), across.collect()]
     }
 
     /// The unit slopes of a normal up to a common factor, without a division.
-    fn unit_slopes(&self, view: &Stretched, m: Vec3) -> UnitSlopes {
+    fn unit_slopes(self, view: &Stretched, m: Vec3) -> UnitSlopes {
         let [vx, vy, mx, my] = [view.x, view.y, m.x, m.y].map(f64::from);
-        let (sx, sy) = (f64::from(self.sigma_x), f64::from(self.sigma_y));
+        let [sx, sy] = self.scales.sigma.map(f64::from);
         let (a, b) = (mx * sy, my * sx);
         let frame = sqrt64(vx * vx + vy * vy);
         UnitSlopes { x: a * vx + b * vy, z: f64::from(m.z) * sx * sy * frame, y: b * vx - a * vy }
     }
+}
 
+impl Slices {
     /// Density of the heavy part at x/z: 2k s x (1 + s x²)^(−k−1) for x > 0.
     fn heavy_density(&self, at: &UnitSlopes) -> f64 {
         let (s, two_gamma_minus_3) = (f64::from(self.s), 2.0 * self.gamma - 3.0);
@@ -217,24 +212,23 @@ impl StudentT {
     /// The coordinate of a view in rows, equal to the sampler's to rounding.
     #[inline(always)]
     fn coordinate(&self, view: &Stretched) -> f32 {
-        self.slices.row(view.rho, view.z)
+        Shape::row(self, view.rho, view.z)
     }
 
     /// The rows at a view's coordinate, interpolated as the sampler does; `None` where it is NaN.
     #[inline(always)]
     pub(super) fn rows_at(&self, coordinate: f32) -> Option<Rows<'_>> {
-        let slices = &self.slices;
         let (row, between) = split(f32x4::splat(coordinate));
         let (row, between) = (row.to_array()[0] as u32 as usize, between.to_array()[0]);
-        let stride = 2 * (slices.half_cells + 1);
-        let (low, high) = slices.slope.get(row * stride..)?.get(..2 * stride)?.split_at(stride);
+        let stride = 2 * (self.half_cells + 1);
+        let (low, high) = self.slope.get(row * stride..)?.get(..2 * stride)?.split_at(stride);
         Some(Rows { low, high, between })
     }
 
     /// The half of the row that holds the in-plane slope of ends 1 ± h, and the cell in it.
     #[inline(always)]
     fn cell_along(&self, rows: &Rows<'_>, ends: [f64; 2]) -> (usize, Cell) {
-        let cells = self.slices.half_cells;
+        let cells = self.half_cells;
         let low = ends[0];
         // The half for u ≤ ½ ends where 1 + h reaches its last node; larger slopes are looked up by
         // 1 − h in the other half. An index avoids a branch that would be mispredicted half of the
@@ -247,7 +241,7 @@ impl StudentT {
     /// The cell of the slopes across that holds the distance g from their end.
     #[inline(always)]
     fn cell_across(&self, g: f64) -> Cell {
-        let nodes = &self.slices.across;
+        let nodes = &self.across;
         Cell::find(&Rows::one(nodes), 0, nodes.len() - 1, g)
     }
 
@@ -259,9 +253,23 @@ impl StudentT {
         if half == 0 { u } else { 1.0 - u }
     }
 
-    pub(super) fn row(&self, row: usize) -> Rows<'_> {
-        let stride = 2 * (self.slices.half_cells + 1);
-        Rows::one(&self.slices.slope[row * stride..(row + 1) * stride])
+    pub(super) fn one_row(&self, row: usize) -> Rows<'_> {
+        let stride = 2 * (self.half_cells + 1);
+        Rows::one(&self.slope[row * stride..(row + 1) * stride])
+    }
+}
+
+impl StudentT {
+    /// The slopes at which the tabulated density ([`table_pdf`](crate::lobe::Tabulated::table_pdf))
+    /// of a view has joints: unit slopes x in the plane of incidence, ascending, and t ≥ 0 across
+    /// it.
+    ///
+    /// Between joints the density of the samples is smooth, so a quadrature that divides there
+    /// converges fast. x may end at ±∞.
+    #[must_use]
+    pub fn table_joints(&self, v: impl Into<[f32; 3]>) -> [Vec<f64>; 2] {
+        let surface = self.surface();
+        surface.joints(&surface.stretch(vec3(v)))
     }
 }
 
@@ -275,13 +283,14 @@ mod tests {
         let tables = Tables::embedded();
         for gamma in [1.501, 1.7, 1.8, 2.0, 3.0, f64::INFINITY] {
             let lobe = tables.student_t(1.0, gamma).unwrap();
+            let (surface, slices) = (lobe.surface(), &lobe.slices);
             for z in [0.0, 1e-3, 0.1, 0.4, 0.7, 0.95, 0.9999] {
-                let view = lobe.stretch(Vec3::new(libm::sqrtf(1.0 - z * z), 0.0, z));
-                let rows = lobe.rows_at(lobe.coordinate(&view)).unwrap();
+                let view = surface.stretch(Vec3::new(libm::sqrtf(1.0 - z * z), 0.0, z));
+                let rows = slices.rows_at(slices.coordinate(&view)).unwrap();
                 for i in 1..400 {
                     let u = i as f32 / 400.0;
-                    let slope = lobe.sample_slope(&view, u);
-                    let got = lobe.number_along(&rows, f64::from(slope.x), f64::from(slope.z));
+                    let slope = surface.sample_slope(&view, u);
+                    let got = slices.number_along(&rows, f64::from(slope.x), f64::from(slope.z));
                     assert!((got - f64::from(u)).abs() < 1e-5, "{gamma} {z} {u}: {got}");
                 }
             }

@@ -13,24 +13,24 @@ use glam::Vec3;
 use wide::{bytemuck, f32x4, i32x4};
 
 use microfacet_tables::axis::half_tangent::half_slope_at;
-use microfacet_tables::axis::hermite::{Cell, cubic_lanes, hermite_lanes, split};
+use microfacet_tables::axis::hermite::{Cell, hermite_lanes, split};
 use microfacet_tables::axis::roots;
 
-use super::one::{least_clear, pair, start};
+use super::one::{least_clear, start};
 use super::views::Views;
 use crate::material::heavy::parts;
 use crate::material::horizon::HORIZON;
-use crate::material::student_t::StudentT;
+use crate::material::surface::{Shape, Surface};
 use crate::vector::vec3;
 
 pub(crate) const LANES: usize = 4;
 /// How many groups of four go through each stage together.
 const GROUPS: usize = 8;
 
-impl StudentT {
+impl<S: Shape> Surface<S> {
     /// As many normals as there are views; the slices are of the same length.
     pub(crate) fn sample_all<V: Copy + Into<[f32; 3]>, M: From<[f32; 3]>>(
-        &self,
+        self,
         v: &[V],
         u: &[[f32; 2]],
         m: &mut [M],
@@ -38,7 +38,7 @@ impl StudentT {
         let ((v, v_rest), (u, u_rest)) = (v.as_chunks(), u.as_chunks());
         let (m, m_rest) = m.as_chunks_mut();
         for ((v, u), m) in v.chunks(GROUPS).zip(u.chunks(GROUPS)).zip(m.chunks_mut(GROUPS)) {
-            if self.slices.peeled {
+            if self.shape.peeled() {
                 self.sample_groups::<true, V, M>(v, u, m);
             } else {
                 self.sample_groups::<false, V, M>(v, u, m);
@@ -51,12 +51,12 @@ impl StudentT {
 
     /// At most [`GROUPS`] groups of four, stage by stage.
     fn sample_groups<const HEAVY: bool, V: Copy + Into<[f32; 3]>, M: From<[f32; 3]>>(
-        &self,
+        self,
         v: &[[V; LANES]],
         u: &[[[f32; 2]; LANES]],
         m: &mut [[M; LANES]],
     ) {
-        let sigma = [self.sigma_x, self.sigma_y];
+        let sigma = self.scales.sigma;
         let mut located = [Located::default(); GROUPS];
         for ((at, v), u) in located.iter_mut().zip(v).zip(u) {
             let [x, y, z] = transpose(v);
@@ -78,66 +78,53 @@ impl StudentT {
         }
     }
 
-    /// The general path for one direction: a visible normal for every material and view.
-    #[inline(never)]
-    pub(crate) fn sample_general(&self, x: f32, y: f32, z: f32, u: [f32; 2]) -> Vec3 {
-        let v = [x, y, z].map(f32x4::splat);
-        let sigma = [self.sigma_x, self.sigma_y];
-        let normals =
-            self.unnormalised(Views::new(v[0] * sigma[0], v[1] * sigma[1], v[2]), u, sigma);
-        facing(above_horizon(normals, f32x4::ONE), v).map(|x| x.to_array()[0]).into()
-    }
-
-    /// The normals visible along stretched views, stretched by `sigma` and not normalised.
-    pub(crate) fn unnormalised(&self, views: Views, u: [f32; 2], sigma: [f32; 2]) -> [f32x4; 3] {
+    /// The normals visible along stretched views, not normalised.
+    pub(crate) fn unnormalised(self, views: Views, u: [f32; 2]) -> [f32x4; 3] {
         let at = self.locate::<true>(views, u.map(f32x4::splat));
         let slopes = self.look_up::<true>(&at);
-        let [x, y, z] = self.assemble_lanes(&at.views, &slopes, sigma);
+        let [x, y, z] = self.assemble_lanes(&at.views, &slopes, self.scales.sigma);
         [x, y, z * slopes.shrink]
     }
 
     #[inline(always)]
-    fn locate<const HEAVY: bool>(&self, views: Views, u: [f32x4; 2]) -> Located {
-        let slices = &self.slices;
+    fn locate<const HEAVY: bool>(self, views: Views, u: [f32x4; 2]) -> Located {
+        let shape = self.shape;
         let Views { rho, z, length, .. } = views;
-        let [at, silhouette] = slices.place::<HEAVY>(rho, z, length);
+        let [at, silhouette] = shape.place::<HEAVY>(rho, z, length);
         let (row, between) = split(at);
-        let [number, heavy] = if HEAVY && slices.peeled {
-            parts(u[0], slices.heavy.shares(at, coefficients))
+        let [number, heavy] = if HEAVY && shape.peeled() {
+            parts(u[0], shape.shares(at))
         } else {
             [u[0], f32x4::ZERO]
         };
-        let along = Number::new(number, slices.scales[0]);
-        let across = Number::new(u[1], slices.scales[1]);
+        let scales = shape.scales();
+        let along = Number::new(number, scales[0]);
+        let across = Number::new(u[1], scales[1]);
         Located { views, silhouette, row, between, number, heavy, along, across }
     }
 
     #[inline(always)]
-    fn look_up<const HEAVY: bool>(&self, at: &Located) -> Slopes {
-        let slices = &self.slices;
-        let stride = 2 * slices.half();
+    fn look_up<const HEAVY: bool>(self, at: &Located) -> Slopes {
+        let shape = self.shape;
+        let stride = 2 * shape.half();
         let half: i32x4 = bytemuck::cast(at.along.towards);
-        let cell = at.along.cell + (half & i32x4::splat(slices.half() as i32));
+        let cell = at.along.cell + (half & i32x4::splat(shape.half() as i32));
         let (row, cell, between) = (at.row.to_array(), cell.to_array(), at.between.to_array());
-        let nodes = &slices.slope[..];
         let node = |i: usize| {
             let low = start(row[i] as u32, stride, cell[i]);
             let high = low + stride as usize;
-            if high + 2 > nodes.len() {
-                return f32x4::splat(f32::NAN);
-            }
-            let (low, high) = (pair(nodes, low), pair(nodes, high));
+            let [low, high] = shape.rows(low, high);
             low + f32x4::splat(between[i]) * (high - low)
         };
         let g = hermite_lanes(f32x4::transpose(core::array::from_fn(node)), at.along.w);
-        let cells = coefficients(&slices.across_cells, at.across.cell.to_array());
-        let [t, t_z] = half_slope_at(cubic_lanes(cells, at.across.w));
+        let across = shape.across_lanes(at.across.cell.to_array(), at.across.w);
+        let [t, t_z] = half_slope_at(across);
         let [x, mut z] = half_slope_at(g);
         let mut x = x ^ at.along.sign();
         let mut shrink = f32x4::ONE;
         let (mut ahead, mut silhouette) = (g, !at.along.towards & at.silhouette);
-        if HEAVY && slices.peeled {
-            let heavy = slices.heavy.half_slopes(at.number);
+        if HEAVY && shape.peeled() {
+            let heavy = shape.tail().half_slopes(at.number);
             [x, z] = [at.heavy.select(heavy[0], x), at.heavy.select(heavy[1], z)];
             shrink = at.heavy.select(heavy[2], f32x4::ONE);
             ahead = at.heavy.select(x + z, ahead);
@@ -148,9 +135,9 @@ impl StudentT {
     }
 
     #[inline(always)]
-    fn assemble_lanes(&self, views: &Views, at: &Slopes, [sx, sy]: [f32; 2]) -> [f32x4; 3] {
+    fn assemble_lanes(self, views: &Views, at: &Slopes, [sx, sy]: [f32; 2]) -> [f32x4; 3] {
         let &Slopes { x, z, t, t_z, .. } = at;
-        let norm = (z * z + f32x4::splat(4.0 * self.s) * (x * x)).sqrt();
+        let norm = (z * z + f32x4::splat(4.0 * self.shape.s()) * (x * x)).sqrt();
         // In the order of the code for one direction: strong anisotropy magnifies every rounding.
         let (sx, sy) = (2.0 * sx, 2.0 * sy);
         [
@@ -159,6 +146,22 @@ impl StudentT {
             z * (views.frame * t_z),
         ]
     }
+}
+
+/// The general path for one direction: a visible normal for every material and view.
+#[inline(never)]
+pub(crate) fn sample_general<S: Shape>(
+    seed: S::Seed,
+    sigma: [f32; 2],
+    x: f32,
+    y: f32,
+    z: f32,
+    u: [f32; 2],
+) -> Vec3 {
+    let v = [x, y, z].map(f32x4::splat);
+    let views = Views::new(v[0] * sigma[0], v[1] * sigma[1], v[2]);
+    let normals = Surface::new(S::of_seed(seed), sigma).unnormalised(views, u);
+    facing(above_horizon(normals, f32x4::ONE), v).map(|x| x.to_array()[0]).into()
 }
 
 /// Four views and pairs of random numbers, located in the tables.

@@ -5,11 +5,11 @@ use glam::Vec3;
 use wide::f32x4;
 
 use microfacet_tables::axis::above_zero;
-use microfacet_tables::axis::hermite::{horner, horner_lanes, split};
+use microfacet_tables::axis::hermite::split;
 
-use super::four::{LANES, coefficients, transpose};
+use super::four::{LANES, transpose};
 use super::{swap_halves, swap_pairs};
-use crate::material::student_t::StudentT;
+use crate::material::surface::{Shape, Surface};
 use crate::vector::vec3;
 
 /// Returns 0, the G1 of NaN; cold, so that the common path stays short.
@@ -18,28 +18,29 @@ fn g1_of_nan<T: Default>() -> T {
     T::default()
 }
 
-impl StudentT {
+impl<S: Shape> Surface<S> {
     #[inline(always)]
-    pub(crate) fn g1_of_one(&self, v: Vec3) -> f32 {
+    pub(crate) fn g1_of_one(self, v: Vec3) -> f32 {
         // As `inverse_area`, without the azimuth, and with κ folded into the roughness. The chain
         // of a root, a division and a lookup is so long that the instructions of a few calls fill
         // the processor's window, so every instruction counts. Of 4.3 ns, Horner's scheme, which no
         // compiler turns into shuffles, saved about 0.5, an area without a lower limit 0.2, and a
         // root of all lanes, none of which is set to zero, with NaN handled out of line, 0.3; 3.1
         // are left.
-        let slices = &self.slices;
-        let [kx, ky] = self.kappa_sigma;
+        let (view, cells) = self.shape.masking_view();
+        let [kx, ky] = self.scales.kappa;
         let xy = f32x4::new([v.x, v.y, 0.0, 0.0]) * f32x4::new([kx, ky, 0.0, 0.0]);
         let squares = xy * xy;
         // G1 = −0 would make Λ −∞.
         let z = above_zero(f32x4::new([v.z, 0.0, 0.0, 0.0]));
         let across = (squares + swap_pairs(squares)).sqrt();
-        let [q, at] = slices.shadowing_view.of_views(across, z, slices.shadowing_cells);
+        let [q, at] = view.of_views(across, z, cells);
         let (cell, w) = split(at);
-        let Some(cell) = slices.shadowing.get(cell.to_array()[0] as u32 as usize) else {
+        let cell = cell.to_array()[0] as u32 as usize;
+        let Some(value) = self.shape.masking(cell, w.to_array()[0]) else {
             return g1_of_nan();
         };
-        let g1 = q.to_array()[0] * horner(cell, w.to_array()[0]);
+        let g1 = q.to_array()[0] * value;
         // The null vector gives 0/0: an index out of the table where the cast does not saturate,
         // and cell 0 where it does.
         if cfg!(not(target_feature = "sse2")) && g1.is_nan() {
@@ -52,26 +53,21 @@ impl StudentT {
     /// G1 of a view and a light: the root, the division and the lookup's arithmetic of
     /// [`g1_of_one`](Self::g1_of_one) in two lanes.
     #[inline(always)]
-    pub(crate) fn g1_of_both(&self, v: Vec3, l: Vec3) -> [f32; 2] {
-        let slices = &self.slices;
+    pub(crate) fn g1_of_both(self, v: Vec3, l: Vec3) -> [f32; 2] {
+        let (view, cells) = self.shape.masking_view();
         // Lanes [v, l, v, l], so that none has to be set to zero.
-        let [kx, ky] = self.kappa_sigma;
+        let [kx, ky] = self.scales.kappa;
         let xy = f32x4::new([v.x, l.x, v.y, l.y]) * f32x4::new([kx, kx, ky, ky]);
         let squares = xy * xy;
         let z = above_zero(f32x4::new([v.z, l.z, v.z, l.z]));
         let across = (squares + swap_halves(squares)).sqrt();
-        let [q, at] = slices.shadowing_view.of_views(across, z, slices.shadowing_cells);
+        let [q, at] = view.of_views(across, z, cells);
         let (cell, w) = split(at);
         let [i, j, ..] = cell.to_array().map(|cell| cell as u32 as usize);
-        let (Some(a), Some(b)) = (slices.shadowing.get(i), slices.shadowing.get(j)) else {
+        let Some(values) = self.shape.masking_of_two([i, j], w) else {
             return g1_of_nan();
         };
-        // c₀ and c₁ of both, then c₂ and c₃.
-        let (a, b) = (f32x4::new(*a), f32x4::new(*b));
-        let (low, high) = (a.unpack_lo(b), a.unpack_hi(b));
-        let ([wa, wb, ..], square) = (w.to_array(), w * w);
-        let terms = (low + square * high) * f32x4::new([1.0, 1.0, wa, wb]);
-        let g1 = q * (terms + swap_halves(terms));
+        let g1 = q * values;
         // Where the cast saturates NaN reads cell 0, and the minimum may be 1.
         if cfg!(not(target_feature = "sse2")) && g1.is_nan().any() {
             return g1_of_nan();
@@ -81,7 +77,7 @@ impl StudentT {
     }
 
     /// G1 of each view; the slices are of the same length.
-    pub(crate) fn g1_all<V: Copy + Into<[f32; 3]>>(&self, v: &[V], g1: &mut [f32]) {
+    pub(crate) fn g1_all<V: Copy + Into<[f32; 3]>>(self, v: &[V], g1: &mut [f32]) {
         let (v, v_rest) = v.as_chunks::<LANES>();
         let (g1, g1_rest) = g1.as_chunks_mut::<LANES>();
         for (v, g1) in v.iter().zip(g1) {
@@ -93,16 +89,16 @@ impl StudentT {
     }
 
     #[inline(always)]
-    fn g1_lanes<V: Copy + Into<[f32; 3]>>(&self, w: &[V; LANES]) -> [f32; LANES] {
-        let slices = &self.slices;
+    fn g1_lanes<V: Copy + Into<[f32; 3]>>(self, w: &[V; LANES]) -> [f32; LANES] {
+        let (view, cells) = self.shape.masking_view();
         let [wx, wy, wz] = transpose(w);
-        let [kx, ky] = self.kappa_sigma;
+        let [kx, ky] = self.scales.kappa;
         let (x, y) = (wx * kx, wy * ky);
         let z = above_zero(wz);
         let across = (x * x + y * y).sqrt();
-        let [q, at] = slices.shadowing_view.of_views(across, z, slices.shadowing_cells);
+        let [q, at] = view.of_views(across, z, cells);
         let (cell, w) = split(at);
-        let g1 = q * horner_lanes(coefficients(&slices.shadowing, cell.to_array()), w);
+        let g1 = q * self.shape.masking_lanes(cell.to_array(), w);
         // NaN gives 0 here, too.
         (g1.fast_min(f32x4::ONE) & g1.simd_ge(0.0)).to_array()
     }

@@ -7,7 +7,7 @@
 
 pub(crate) mod four;
 mod masking;
-mod one;
+pub(crate) mod one;
 pub(crate) mod views;
 
 use glam::Vec3;

@@ -21,144 +21,146 @@ use glam::Vec3;
 use wide::{bytemuck, f32x4, i32x4};
 
 use microfacet_tables::axis::half_tangent::half_slope_at;
-use microfacet_tables::axis::hermite::{Node, basis, cubic, split};
+use microfacet_tables::axis::hermite::{Node, basis, split};
 use microfacet_tables::axis::roots;
 
+use super::four::sample_general;
 use super::views::View;
 use super::{first_three, pairs, pairs_of_firsts, sum, swap_pairs};
 use crate::material::heavy::Part;
 use crate::material::horizon::HORIZON;
-use crate::material::student_t::StudentT;
+use crate::material::surface::{Shape, Surface};
 
-impl StudentT {
+impl<S: Shape> Surface<S> {
     /// A visible normal, by the fast path where it serves and by the general path elsewhere.
     #[inline(always)]
-    pub(crate) fn sample(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
+    pub(crate) fn sample(self, v: Vec3, u: [f32; 2]) -> Vec3 {
         // Scalar arguments keep the common case in registers next to the calls of the other cases.
-        if self.slices.peeled {
-            return self.sample_heavy(v.x, v.y, v.z, u);
+        let (seed, sigma) = (self.shape.seed(), self.scales.sigma);
+        if self.shape.peeled() {
+            return sample_heavy::<S>(seed, sigma, [v.x, v.y, v.z], u);
         }
-        let m = self.sample_fast::<false>(v, u);
-        m.map_or_else(|| self.sample_general(v.x, v.y, v.z, u), first_three)
+        let m = draw::<S, false>(self.shape, &self.view::<false>(v), u, sigma, |m| m);
+        m.map_or_else(|| sample_general::<S>(seed, sigma, v.x, v.y, v.z, u), first_three)
     }
 
     /// A visible normal of any length, where that is faster; its squares are in range.
     #[inline(always)]
-    pub(crate) fn sample_along(&self, v: Vec3, u: [f32; 2]) -> Vec3 {
-        if self.slices.peeled {
-            return self.sample_heavy(v.x, v.y, v.z, u);
+    pub(crate) fn sample_along(self, v: Vec3, u: [f32; 2]) -> Vec3 {
+        let (seed, sigma) = (self.shape.seed(), self.scales.sigma);
+        if self.shape.peeled() {
+            return sample_heavy::<S>(seed, sigma, [v.x, v.y, v.z], u);
         }
-        let m = self.draw_along::<false>(&self.view::<false>(v), u, [self.sigma_x, self.sigma_y]);
-        m.map_or_else(|| self.sample_general(v.x, v.y, v.z, u), |(m, _)| first_three(m))
+        let m = draw_along::<S, false>(self.shape, &self.view::<false>(v), u, sigma);
+        m.map_or_else(
+            || sample_general::<S>(seed, sigma, v.x, v.y, v.z, u),
+            |(m, _)| first_three(m),
+        )
     }
+}
 
-    /// [`sample`](Self::sample) of a lobe with a heavy part, out of line so that calls of other
-    /// lobes stay short.
-    #[inline(never)]
-    fn sample_heavy(&self, x: f32, y: f32, z: f32, u: [f32; 2]) -> Vec3 {
-        let m = self.sample_fast::<true>(Vec3::new(x, y, z), u);
-        m.map_or_else(|| self.sample_general(x, y, z, u), first_three)
-    }
+/// [`Surface::sample`] of a shape with a heavy part, out of line so that calls of other shapes stay
+/// short.
+#[inline(never)]
+fn sample_heavy<S: Shape>(seed: S::Seed, sigma: [f32; 2], v: [f32; 3], u: [f32; 2]) -> Vec3 {
+    let surface = Surface::new(S::of_seed(seed), sigma);
+    let [x, y, z] = v;
+    let view = surface.view::<true>(Vec3::new(x, y, z));
+    let m = draw::<S, true>(surface.shape, &view, u, sigma, |m| m);
+    m.map_or_else(|| sample_general::<S>(seed, sigma, x, y, z, u), first_three)
+}
 
-    /// `None` where the case is not [common](Self::draw).
-    #[inline(always)]
-    pub(crate) fn sample_fast<const HEAVY: bool>(&self, v: Vec3, u: [f32; 2]) -> Option<f32x4> {
-        self.draw::<HEAVY>(&self.view::<HEAVY>(v), u, [self.sigma_x, self.sigma_y], |m| m)
-    }
+/// The normal visible along a view: drawn in unit space, stretched by `sigma`, then transformed
+/// by `to_tangent` and normalised.
+///
+/// `None` outside the common case: normals that rounding may have put behind the silhouette,
+/// and arguments that are out of range or NaN.
+#[inline(always)]
+pub(crate) fn draw<S: Shape, const HEAVY: bool>(
+    shape: S,
+    view: &View,
+    u: [f32; 2],
+    sigma: [f32; 2],
+    to_tangent: impl FnOnce(f32x4) -> f32x4,
+) -> Option<f32x4> {
+    let (m, shrink) = draw_along::<S, HEAVY>(shape, view, u, sigma)?;
+    let m = to_tangent(m);
+    let m = m / sum(m * m).sqrt();
+    let lowest = f32x4::new([-1.0, -1.0, HORIZON, 0.0]);
+    Some(if HEAVY { (m * shrink).fast_max(lowest) } else { m })
+}
 
-    /// The normal visible along a view: drawn in unit space, stretched by `sigma`, then transformed
-    /// by `to_tangent` and normalised.
-    ///
-    /// `None` outside the common case: normals that rounding may have put behind the silhouette,
-    /// and arguments that are out of range or NaN.
-    #[inline(always)]
-    pub(crate) fn draw<const HEAVY: bool>(
-        &self,
-        view: &View,
-        u: [f32; 2],
-        sigma: [f32; 2],
-        to_tangent: impl FnOnce(f32x4) -> f32x4,
-    ) -> Option<f32x4> {
-        let (m, shrink) = self.draw_along::<HEAVY>(view, u, sigma)?;
-        let m = to_tangent(m);
-        let m = m / sum(m * m).sqrt();
-        let lowest = f32x4::new([-1.0, -1.0, HORIZON, 0.0]);
-        Some(if HEAVY { (m * shrink).fast_max(lowest) } else { m })
-    }
+/// The normal of [`draw`](Self::draw) before `to_tangent`, with squares in range, and a factor
+/// on the normal after normalisation.
+#[inline(always)]
+pub(crate) fn draw_along<S: Shape, const HEAVY: bool>(
+    shape: S,
+    view: &View,
+    u: [f32; 2],
+    [sx, sy]: [f32; 2],
+) -> Option<(f32x4, f32x4)> {
+    let &View { xy, frame, at, silhouette, .. } = view;
+    let (row, between) = split(at);
+    let (row, between) = (row.to_array()[0] as u32, f32x4::splat(between.to_array()[0]));
 
-    /// The normal of [`draw`](Self::draw) before `to_tangent`, with squares in range, and a factor
-    /// on the normal after normalisation.
-    #[inline(always)]
-    pub(crate) fn draw_along<const HEAVY: bool>(
-        &self,
-        view: &View,
-        u: [f32; 2],
-        [sx, sy]: [f32; 2],
-    ) -> Option<(f32x4, f32x4)> {
-        let slices = &self.slices;
-        let &View { xy, frame, at, silhouette, .. } = view;
-        let (row, between) = split(at);
-        let (row, between) = (row.to_array()[0] as u32, f32x4::splat(between.to_array()[0]));
-
-        // Both random numbers in two lanes: fourth roots, cells and positions.
-        let (mut along, mut tail) = (u[0], None);
-        if HEAVY && slices.peeled {
-            match Part::of(along, slices.heavy.share(at.to_array()[0])) {
-                Part::Tabulated(number) => along = number,
-                Part::Heavy(number) => tail = Some(number),
-            }
+    // Both random numbers in two lanes: fourth roots, cells and positions.
+    let (mut along, mut tail) = (u[0], None);
+    if HEAVY && shape.peeled() {
+        match Part::of(along, shape.share(at.to_array()[0])) {
+            Part::Tabulated(number) => along = number,
+            Part::Heavy(number) => tail = Some(number),
         }
-        let u = f32x4::new([along, u[1], 0.0, 0.0]);
-        let t = roots(u) * f32x4::new([slices.scales[0], slices.scales[1], 0.0, 0.0]);
-        let (cell, w) = split(t);
-        let w = w.to_array();
-        let towards = u.simd_gt(0.5);
-        let sign = towards & f32x4::splat(-0.0);
-        let half: i32x4 = bytemuck::cast(towards);
-        let cell = (cell + (half & i32x4::new([slices.half() as i32, 0, 0, 0]))).to_array();
-
-        // The guard cell makes the cell of every random number valid, and the guard row that of
-        // every view. NaN fails here or, where it converts to 0, in the test of g.
-        let stride = 2 * slices.half();
-        let low = start(row, stride, cell[0]);
-        let (high, across) = (low + stride as usize, cell[1] as u32 as usize);
-        let nodes = &slices.slope[..];
-        if !(high + 2 <= nodes.len() && across < slices.across_cells.len()) {
-            return None;
-        }
-
-        // The slope across, as the ratio 2 t : t_z; then the factors of the in-plane slope and of
-        // its norm.
-        let g_across = f32x4::splat(cubic(&slices.across_cells[across], w[1]));
-        let [t, t_z] = half_slope_at(g_across);
-        let view = pairs(xy, frame);
-        let ahead = view * f32x4::new([2.0 * sx, 2.0 * sy, 1.0, 0.0]) * t_z;
-        let aside = swap_pairs(view)
-            * f32x4::new([-2.0 * sx, 2.0 * sy, 0.0, 0.0])
-            * f32x4::splat((t ^ sign).to_array()[1]);
-
-        // Half of x, and z, of the in-plane slope, and whether the normal is visible.
-        let mut shrink = f32x4::ONE;
-        let (x, z, clear) = if HEAVY && let Some(number) = tail {
-            let [x, z, factor] = slices.heavy.half_slopes(f32x4::splat(number));
-            shrink = pairs_of_firsts(f32x4::ONE, factor);
-            // A heavy slope is on the viewer's side: the test only excludes that x and z are both
-            // small.
-            (x, z, ((x + z) * t_z).to_array()[0] >= least_clear(f32x4::ZERO, t, t_z).to_array()[0])
-        } else {
-            let least = least_clear(!towards & silhouette, t, t_z);
-            // Interpolation between the rows, then along u₁.
-            let (low, high) = (pair(nodes, low), pair(nodes, high));
-            let g = sum((low + between * (high - low)) * basis(f32x4::splat(w[0])));
-            let [x, z] = half_slope_at(g);
-            (x ^ sign, z, (g * t_z).to_array()[0] >= least.to_array()[0])
-        };
-        if !clear {
-            return None;
-        }
-        let norm = (z * z + f32x4::splat(4.0 * self.s) * (x * x)).sqrt();
-        Some((pairs_of_firsts(x, z) * ahead + norm * aside, shrink))
     }
+    let u = f32x4::new([along, u[1], 0.0, 0.0]);
+    let [along_scale, across_scale] = shape.scales();
+    let t = roots(u) * f32x4::new([along_scale, across_scale, 0.0, 0.0]);
+    let (cell, w) = split(t);
+    let w = w.to_array();
+    let towards = u.simd_gt(0.5);
+    let sign = towards & f32x4::splat(-0.0);
+    let half: i32x4 = bytemuck::cast(towards);
+    let cell = (cell + (half & i32x4::new([shape.half() as i32, 0, 0, 0]))).to_array();
+
+    // The guard cell makes the cell of every random number valid, and the guard row that of
+    // every view. NaN fails here or, where it converts to 0, in the test of g.
+    let stride = 2 * shape.half();
+    let low = start(row, stride, cell[0]);
+    let (high, across) = (low + stride as usize, cell[1] as u32 as usize);
+    if !shape.reads(high, across) {
+        return None;
+    }
+
+    // The slope across, as the ratio 2 t : t_z; then the factors of the in-plane slope and of
+    // its norm.
+    let g_across = f32x4::splat(shape.across(across, w[1]));
+    let [t, t_z] = half_slope_at(g_across);
+    let view = pairs(xy, frame);
+    let ahead = view * f32x4::new([2.0 * sx, 2.0 * sy, 1.0, 0.0]) * t_z;
+    let aside = swap_pairs(view)
+        * f32x4::new([-2.0 * sx, 2.0 * sy, 0.0, 0.0])
+        * f32x4::splat((t ^ sign).to_array()[1]);
+
+    // Half of x, and z, of the in-plane slope, and whether the normal is visible.
+    let mut shrink = f32x4::ONE;
+    let (x, z, clear) = if HEAVY && let Some(number) = tail {
+        let [x, z, factor] = shape.tail().half_slopes(f32x4::splat(number));
+        shrink = pairs_of_firsts(f32x4::ONE, factor);
+        // A heavy slope is on the viewer's side: the test only excludes that x and z are both
+        // small.
+        (x, z, ((x + z) * t_z).to_array()[0] >= least_clear(f32x4::ZERO, t, t_z).to_array()[0])
+    } else {
+        let least = least_clear(!towards & silhouette, t, t_z);
+        // Interpolation between the rows, then along u₁.
+        let [low, high] = shape.rows(low, high);
+        let g = sum((low + between * (high - low)) * basis(f32x4::splat(w[0])));
+        let [x, z] = half_slope_at(g);
+        (x ^ sign, z, (g * t_z).to_array()[0] >= least.to_array()[0])
+    };
+    if !clear {
+        return None;
+    }
+    let norm = (z * z + f32x4::splat(4.0 * shape.s()) * (x * x)).sqrt();
+    Some((pairs_of_firsts(x, z) * ahead + norm * aside, shrink))
 }
 
 /// How far, in g, a normal must be from the silhouette so that no rounding can hide it.

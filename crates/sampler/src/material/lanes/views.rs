@@ -5,7 +5,7 @@ use glam::Vec3;
 use wide::f32x4;
 
 use super::swap_pairs;
-use crate::material::student_t::{LONG, LONGEST, NORMAL_INCIDENCE, SHORT, StudentT};
+use crate::material::surface::{LONG, LONGEST, NORMAL_INCIDENCE, SHORT, Shape, Surface};
 
 /// 2⁴⁰: a short horizontal component times this, or a long one over it, has squares in range.
 const LIFT: f32 = 1_099_511_627_776.0;
@@ -32,16 +32,19 @@ fn upright(x: f32, y: f32, z: f32) -> [f32; 6] {
     [x, y, frame, rho, z, length].map(|x| x.to_array()[0])
 }
 
-impl StudentT {
+impl<S: Shape> Surface<S> {
     #[inline(always)]
-    pub(crate) fn view<const HEAVY: bool>(&self, v: Vec3) -> View {
-        let sigma = f32x4::new([self.sigma_x, self.sigma_y, 0.0, 0.0]);
-        self.stretched::<HEAVY>(f32x4::new([v.x, v.y, 0.0, 0.0]) * sigma, v.z)
+    pub(crate) fn view<const HEAVY: bool>(self, v: Vec3) -> View {
+        let [sx, sy] = self.scales.sigma;
+        let xy = f32x4::new([v.x, v.y, 0.0, 0.0]) * f32x4::new([sx, sy, 0.0, 0.0]);
+        View::new::<S, HEAVY>(self.shape, xy, v.z)
     }
+}
 
-    /// A stretched view, located in the table. `HEAVY` lobes have a peeled table.
+impl View {
+    /// A stretched view, located in the table. `HEAVY` shapes have a peeled table.
     #[inline(always)]
-    pub(crate) fn stretched<const HEAVY: bool>(&self, xy: f32x4, z: f32) -> View {
+    pub(crate) fn new<S: Shape, const HEAVY: bool>(shape: S, xy: f32x4, z: f32) -> Self {
         let mut z = f32x4::splat(if z > 0.0 { z } else { 0.0 });
         let squares = xy * xy;
         let rho2 = squares + swap_pairs(squares);
@@ -54,12 +57,12 @@ impl StudentT {
             xy = f32x4::new([x, y, 0.0, 0.0]);
             [frame, rho, z, length] = others.map(f32x4::splat);
         }
-        let [at, silhouette] = self.slices.place::<HEAVY>(rho, z, length);
-        View { xy, frame, rho, z, at, silhouette }
+        let [at, silhouette] = shape.place::<HEAVY>(rho, z, length);
+        Self { xy, frame, rho, z, at, silhouette }
     }
 }
 
-/// Four views as [`Stretched`](crate::material::student_t::Stretched) is one, and √(ρ² + z²).
+/// Four views as [`Stretched`](crate::material::surface::Stretched) is one, and √(ρ² + z²).
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Views {
     pub(crate) x: f32x4,
