@@ -326,7 +326,7 @@ impl Tabulated for EllipsoidRef<'_> {
         let length = sqrt(unit.dot(unit));
         // The ratio of solid angles, scale over the length cubed.
         let stretch = scale / length / (length * length);
-        let density = self.unit().density_of_samples(w, unit / length) * stretch;
+        let density = self.slices.density_of_samples([1.0; 2], w, unit / length) * stretch;
         // For a normal far from unit length powers of the length are out of range, and 0·∞ is NaN.
         if density > 0.0 { density.min(f32::MAX) } else { 0.0 }
     }

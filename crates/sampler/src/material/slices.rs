@@ -233,12 +233,13 @@ impl Shape for &Slices {
     }
 
     #[inline(always)]
-    fn rows(self, low: usize, high: usize) -> [f32x4; 2] {
+    fn between(self, low: usize, high: usize, w: f32) -> f32x4 {
         let nodes = &self.slope[..];
         if high + 2 > nodes.len() {
-            return [f32x4::splat(f32::NAN); 2];
+            return f32x4::splat(f32::NAN);
         }
-        [pair(nodes, low), pair(nodes, high)]
+        let (low, high) = (pair(nodes, low), pair(nodes, high));
+        low + f32x4::splat(w) * (high - low)
     }
 
     #[inline(always)]

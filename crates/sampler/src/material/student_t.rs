@@ -231,7 +231,8 @@ impl Tabulated for StudentTRef<'_> {
     /// m, and costs two searches and a few square roots.
     fn table_pdf(&self, v: impl Into<[f32; 3]>, m: impl Into<[f32; 3]>) -> f32 {
         let (v, m) = (vec3(v), vec3(m));
-        if is_hidden(v, m) { 0.0 } else { self.surface.density_of_samples(v, m) }
+        let Surface { shape, scales: Scales { sigma, .. } } = self.surface;
+        if is_hidden(v, m) { 0.0 } else { shape.density_of_samples(sigma, v, m) }
     }
 
     fn key(&self) -> LobeKey {

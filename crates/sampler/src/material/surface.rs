@@ -39,11 +39,11 @@ pub(crate) trait Shape: Copy {
     fn half(self) -> u32;
     /// Factors from min(u, 1−u)^¼ to cells, along the plane of incidence and across it.
     fn scales(self) -> [f32; 2];
-    /// Whether [`rows`](Self::rows) and [`across`](Self::across) hold a node and a cell: one test
-    /// for all reads.
+    /// Whether [`between`](Self::between) and [`across`](Self::across) hold a node and a cell: one
+    /// test for all reads.
     fn reads(self, high: usize, across: usize) -> bool;
-    /// (value, slope) of a node and the next, in two rows.
-    fn rows(self, low: usize, high: usize) -> [f32x4; 2];
+    /// (value, slope) of a node and the next, linear in w between their rows.
+    fn between(self, low: usize, high: usize, w: f32) -> f32x4;
     /// The distance of the slope across from its end, in a cell.
     fn across(self, cell: usize, w: f32) -> f32;
     fn across_lanes(self, cells: [i32; LANES], w: f32x4) -> f32x4;

@@ -120,43 +120,44 @@ impl Place {
     }
 }
 
-impl Surface<&Slices> {
+impl Slices {
     /// [`table_pdf`](crate::lobe::Tabulated::table_pdf) of a normal that faces the view. This is
     /// not checked, since rounding may put the slope of a drawn normal behind the silhouette.
-    pub(crate) fn density_of_samples(self, v: Vec3, m: Vec3) -> f32 {
+    pub(crate) fn density_of_samples(&self, sigma: [f32; 2], v: Vec3, m: Vec3) -> f32 {
         if !(m.z > 0.0) {
             return 0.0;
         }
-        let view = self.stretch(v);
-        let at = self.shape.coordinate(&view);
-        let Some(rows) = self.shape.rows_at(at) else { return 0.0 };
-        let slopes = self.unit_slopes(&view, m);
+        let [sx, sy] = sigma;
+        let view = Stretched::new([sx * v.x, sy * v.y, v.z]);
+        let at = self.coordinate(&view);
+        let Some(rows) = self.rows_at(at) else { return 0.0 };
+        let slopes = unit_slopes(&view, sigma, m);
         let UnitSlopes { x, z, y } = slopes;
         let ([low, high], rate) = ends_and_rate(x, z);
-        let (half, cell) = self.shape.cell_along(&rows, [low, high]);
+        let (half, cell) = self.cell_along(&rows, [low, high]);
         let place = cell.place();
         let mut along = place.density() * rate;
         let mut heavy = 0.0;
-        if self.shape.peeled {
-            heavy = f64::from(unit(self.shape.heavy.share(at)));
-            along = (1.0 - heavy) * along + heavy * self.shape.heavy_density(&slopes);
+        if self.peeled {
+            heavy = f64::from(unit(self.heavy.share(at)));
+            along = (1.0 - heavy) * along + heavy * self.heavy_density(&slopes);
         }
-        let s = f64::from(self.shape.s);
+        let s = f64::from(self.s);
         let norm = sqrt64(z * z + s * x * x);
         let ([_, g], rate) = ends_and_rate(y.abs(), norm);
-        let place_across = self.shape.cell_across(g).place();
+        let place_across = self.cell_across(g).place();
         let across = place_across.density() * rate;
         // p(x, y) = p(x) p(t)/√(1 + s x²); `along` is per unit of x/z. Slopes in the tangent frame
         // scale by σ, and dm = cos³θ per slope area.
         let cos = f64::from(m.z);
-        let [sx, sy] = self.scales.sigma.map(f64::from);
+        let [sx, sy] = sigma.map(f64::from);
         let area = norm * sx * sy * (cos * cos * cos);
         let density = along * across * z / area;
         let density = if density > 0.0 { density.min(f64::from(f32::MAX)) as f32 } else { 0.0 };
         // The heavy part extends beyond the end of a peeled table.
         let is_end = place.is_end && (half == 0 || heavy == 0.0);
         if is_end || place_across.is_end || density == 0.0 {
-            return self.at_an_end(density, v, m);
+            return self.at_an_end(density, sigma, v, m);
         }
         density
     }
@@ -168,36 +169,10 @@ impl Surface<&Slices> {
     /// view.
     #[cold]
     #[inline(never)]
-    fn at_an_end(self, density: f32, v: Vec3, m: Vec3) -> f32 {
-        density.max(self.visible_normal_pdf(v, m))
+    fn at_an_end(&self, density: f32, sigma: [f32; 2], v: Vec3, m: Vec3) -> f32 {
+        density.max(Surface::new(self, sigma).visible_normal_pdf(v, m))
     }
 
-    fn joints(self, view: &Stretched) -> [Vec<f64>; 2] {
-        let Some(rows) = self.shape.rows_at(self.shape.coordinate(view)) else {
-            return Default::default();
-        };
-        let half = self.shape.half_cells + 1;
-        let slope = |g: f64, sign: f64| {
-            let [x, z] = slope_at(g);
-            sign * x / z
-        };
-        let away = (0..half).map(|i| slope(f64::from(rows.node(i)[0]), -1.0));
-        let towards = (0..half).rev().map(|i| slope(f64::from(rows.node(half + i)[0]), 1.0));
-        let across = self.shape.across.iter().rev().map(|node| slope(f64::from(node[0]), 1.0));
-        [away.chain(towards).collect(), across.collect()]
-    }
-
-    /// The unit slopes of a normal up to a common factor, without a division.
-    fn unit_slopes(self, view: &Stretched, m: Vec3) -> UnitSlopes {
-        let [vx, vy, mx, my] = [view.x, view.y, m.x, m.y].map(f64::from);
-        let [sx, sy] = self.scales.sigma.map(f64::from);
-        let (a, b) = (mx * sy, my * sx);
-        let frame = sqrt64(vx * vx + vy * vy);
-        UnitSlopes { x: a * vx + b * vy, z: f64::from(m.z) * sx * sy * frame, y: b * vx - a * vy }
-    }
-}
-
-impl Slices {
     /// Density of the heavy part at x/z: 2k s x (1 + s x²)^(−k−1) for x > 0.
     fn heavy_density(&self, at: &UnitSlopes) -> f64 {
         let (s, two_gamma_minus_3) = (f64::from(self.s), 2.0 * self.gamma - 3.0);
@@ -257,6 +232,30 @@ impl Slices {
         let stride = 2 * (self.half_cells + 1);
         Rows::one(&self.slope[row * stride..(row + 1) * stride])
     }
+
+    fn joints(&self, view: &Stretched) -> [Vec<f64>; 2] {
+        let Some(rows) = self.rows_at(self.coordinate(view)) else {
+            return Default::default();
+        };
+        let half = self.half_cells + 1;
+        let slope = |g: f64, sign: f64| {
+            let [x, z] = slope_at(g);
+            sign * x / z
+        };
+        let away = (0..half).map(|i| slope(f64::from(rows.node(i)[0]), -1.0));
+        let towards = (0..half).rev().map(|i| slope(f64::from(rows.node(half + i)[0]), 1.0));
+        let across = self.across.iter().rev().map(|node| slope(f64::from(node[0]), 1.0));
+        [away.chain(towards).collect(), across.collect()]
+    }
+}
+
+/// The unit slopes of a normal up to a common factor, without a division.
+fn unit_slopes(view: &Stretched, sigma: [f32; 2], m: Vec3) -> UnitSlopes {
+    let [vx, vy, mx, my] = [view.x, view.y, m.x, m.y].map(f64::from);
+    let [sx, sy] = sigma.map(f64::from);
+    let (a, b) = (mx * sy, my * sx);
+    let frame = sqrt64(vx * vx + vy * vy);
+    UnitSlopes { x: a * vx + b * vy, z: f64::from(m.z) * sx * sy * frame, y: b * vx - a * vy }
 }
 
 impl StudentT {
@@ -268,8 +267,7 @@ impl StudentT {
     /// converges fast. x may end at ±∞.
     #[must_use]
     pub fn table_joints(&self, v: impl Into<[f32; 3]>) -> [Vec<f64>; 2] {
-        let surface = self.surface();
-        surface.joints(&surface.stretch(vec3(v)))
+        self.slices.joints(&self.surface().stretch(vec3(v)))
     }
 }
 

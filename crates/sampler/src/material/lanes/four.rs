@@ -113,8 +113,7 @@ impl<S: Shape> Surface<S> {
         let node = |i: usize| {
             let low = start(row[i] as u32, stride, cell[i]);
             let high = low + stride as usize;
-            let [low, high] = shape.rows(low, high);
-            low + f32x4::splat(between[i]) * (high - low)
+            shape.between(low, high, between[i])
         };
         let g = hermite_lanes(f32x4::transpose(core::array::from_fn(node)), at.along.w);
         let across = shape.across_lanes(at.across.cell.to_array(), at.across.w);

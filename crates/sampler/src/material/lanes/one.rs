@@ -101,7 +101,7 @@ pub(crate) fn draw_along<S: Shape, const HEAVY: bool>(
 ) -> Option<(f32x4, f32x4)> {
     let &View { xy, frame, at, silhouette, .. } = view;
     let (row, between) = split(at);
-    let (row, between) = (row.to_array()[0] as u32, f32x4::splat(between.to_array()[0]));
+    let (row, between) = (row.to_array()[0] as u32, between.to_array()[0]);
 
     // Both random numbers in two lanes: fourth roots, cells and positions.
     let (mut along, mut tail) = (u[0], None);
@@ -151,8 +151,8 @@ pub(crate) fn draw_along<S: Shape, const HEAVY: bool>(
     } else {
         let least = least_clear(!towards & silhouette, t, t_z);
         // Interpolation between the rows, then along u₁.
-        let [low, high] = shape.rows(low, high);
-        let g = sum((low + between * (high - low)) * basis(f32x4::splat(w[0])));
+        let nodes = shape.between(low, high, between);
+        let g = sum(nodes * basis(f32x4::splat(w[0])));
         let [x, z] = half_slope_at(g);
         (x ^ sign, z, (g * t_z).to_array()[0] >= least.to_array()[0])
     };
