@@ -31,6 +31,8 @@ pub enum MaterialError {
         /// The nearest below and above that are covered.
         nearest: [Option<f64>; 2],
     },
+    /// The set has no tables over a range of γ, as [`Tables::family`](crate::Tables::family) reads.
+    NoRange,
     /// The set has no albedo tables for this form of masking.
     MaskingNotCovered {
         /// The form asked for.
@@ -157,6 +159,11 @@ impl fmt::Display for MaterialError {
                 f,
                 "gamma = {gamma} is not covered by the tables of this set; {}",
                 Served(nearest)
+            ),
+            Self::NoRange => f.write_str(
+                "the set has no tables over a range of gamma, from which lobes of any gamma are \
+                 read: bake a material whose gamma is a range, such as gamma = [1.6, \"inf\"], or \
+                 use `student_t` for the shapes that it has",
             ),
             Self::MaskingNotCovered { masking, other: Some(other) } => {
                 write!(f, "this set has no albedo tables for {masking} masking, only for {other}")

@@ -114,7 +114,7 @@ pub use bsdf::{
     Event, Metal, Plastic, StandIn, Transport, UnknownMetal,
 };
 pub use error::MaterialError;
-pub use material::{Ellipsoid, Ggx, Lobe, MicrofacetDistribution, StudentT};
+pub use material::{Ellipsoid, Family, Ggx, Lobe, MicrofacetDistribution, StudentT};
 pub use microfacet_core::{Masking, Skew};
 pub use microfacet_tables::LoadError;
 #[cfg(feature = "embedded")]
@@ -126,8 +126,8 @@ pub use tables::Tables;
 pub mod lobe {
     pub use crate::error::BatchError;
     pub use crate::material::{
-        Batch, Bounded, BoundedRef, BoundedView, EllipsoidRef, Facet, LobeKey, Radial, Reflecting,
-        Smooth, StudentTRef, Tabulated,
+        Batch, Bounded, BoundedRef, BoundedView, EllipsoidRef, Facet, FamilyLobe, LobeKey, Radial,
+        Reflecting, Smooth, StudentTRef, Tabulated,
     };
     pub use microfacet_core::{Roughness, SkewError};
 }

@@ -11,7 +11,7 @@ use microfacet_tables::{Kind, LoadError, LobeSpec, MaterialEntry, Provenance, Ta
 
 use crate::bind_error::BindError;
 use crate::error::MaterialError;
-use crate::material::{Ellipsoid, Ggx, Lobe, Radial, Smooth, StudentT, coverage};
+use crate::material::{Ellipsoid, Family, Ggx, Lobe, Radial, Smooth, StudentT, coverage};
 
 /// The default set as the bytes of a safetensors file.
 #[cfg(feature = "embedded")]
@@ -217,6 +217,18 @@ impl Tables {
         gamma: f64,
     ) -> Result<StudentT, MaterialError> {
         StudentT::from_tables(&self.tables, sigma.into(), gamma)
+    }
+
+    /// Lobes of every σ and γ, read from the tables at each hit: for textures of roughness and of
+    /// γ. It is prepared here, once for a set, in some milliseconds.
+    ///
+    /// It reads tables over ranges of γ, such as those of the default set or of a material whose γ
+    /// is a range; of several tables of one kind, fallbacks included, that of the widest range.
+    ///
+    /// # Errors
+    /// [`MaterialError::NoRange`] for a set of single shapes.
+    pub fn family(&self) -> Result<Family, MaterialError> {
+        Family::from_tables(&self.tables)
     }
 
     /// The lobe of [`student_t`](Self::student_t), or [`Ggx`] in closed form for γ = 2 where no

@@ -9,16 +9,23 @@
 
 use alloc::vec::Vec;
 
-use wide::f32x4;
+use wide::{f32x4, i32x4};
 
 use microfacet_core::math::unit;
 use microfacet_tables::axis::hermite::{Cell, cubic, cubic_lanes, split};
 
+use super::windows::through_thirds;
 use crate::elementary::{exp2, log2};
 
 /// Cells of the share for each row of the table: its transition near normal incidence narrows as
 /// γ → 3/2, and two cells a row follow it to 4e-6 at γ = 1.501.
 pub(super) const CELLS_PER_ROW: usize = 2;
+
+/// The cells of the share at view coordinates in rows, and the positions in them.
+#[inline(always)]
+pub(super) fn cell_of_share(at: f32x4) -> (i32x4, f32x4) {
+    split(at * CELLS_PER_ROW as f32)
+}
 
 /// The heavy part of a lobe, for all views.
 #[derive(Clone, Debug, Default)]
@@ -45,9 +52,7 @@ impl Heavy {
         let cell = |i: usize| {
             let [a, b, c, d] = [0.0, 1.0, 2.0, 3.0]
                 .map(|thirds| share(((i as f64 + thirds / 3.0) / cells as f64).min(1.0)));
-            let (first, second, third) = (b - a, c - 2.0 * b + a, d - 3.0 * c + 3.0 * b - a);
-            let linear = 3.0 * (first - 0.5 * second + third / 3.0);
-            [a, linear, 4.5 * (second - third), 4.5 * third].map(|x| x as f32)
+            through_thirds([a, b, c, d]).map(|x| x as f32)
         };
         let mut shares: Vec<Cell> = (0..cells).map(cell).collect();
         shares.push([share(1.0) as f32, 0.0, 0.0, 0.0]);
@@ -58,7 +63,7 @@ impl Heavy {
     /// The share at a view coordinate in rows, to rounding in [0, 1].
     #[inline(always)]
     pub(crate) fn share(&self, at: f32) -> f32 {
-        let (cell, w) = split(f32x4::splat(at * CELLS_PER_ROW as f32));
+        let (cell, w) = cell_of_share(f32x4::splat(at));
         let cell = self.shares.get(cell.to_array()[0] as u32 as usize);
         cell.map_or(0.0, |cell| cubic(cell, w.to_array()[0]))
     }
@@ -70,7 +75,7 @@ impl Heavy {
         at: f32x4,
         look_up: impl FnOnce(&[Cell], [i32; 4]) -> [f32x4; 4],
     ) -> f32x4 {
-        let (cell, w) = split(at * CELLS_PER_ROW as f32);
+        let (cell, w) = cell_of_share(at);
         cubic_lanes(look_up(&self.shares, cell.to_array()), w)
     }
 }

@@ -27,6 +27,13 @@ impl Normals {
         Self { s: s as f32, power: (0.5 - 0.5 / s) as f32 }
     }
 
+    /// Of s and γ, of which neither is 0 or ∞.
+    #[inline(always)]
+    pub(crate) fn of_shape(s: f32, gamma: f32) -> Self {
+        const LARGEST: f32 = (1.0 / LEAST_S) as f32;
+        Self { s: s.max(LEAST_S as f32), power: 0.5 - 0.5 * (gamma - 1.0).min(LARGEST) }
+    }
+
     /// √(πσxσy D) of a normal above the horizon from the squares of its horizontal component over
     /// σ, of its vertical component, and of its length, which need not be 1.
     ///

@@ -33,6 +33,11 @@ impl<'a> Slice<'a> {
         Self { kind: table.kind, nodes: pairs(&table.values), axes: &table.axes }
     }
 
+    /// At a node of the γ axis.
+    pub(super) fn node(table: &'a Table, i: usize) -> Self {
+        Self::at(table, alloc::vec![(i, 1.0)])
+    }
+
     fn at(table: &'a Table, weights: Weights) -> Self {
         let nodes = pairs(&table.collapsed(&[weights]));
         Self { kind: table.kind, nodes, axes: &table.axes }
@@ -62,6 +67,18 @@ fn spread(nodes: &mut [Node]) {
         let share = i as f32 / count as f32;
         node[0] = first + step * (share * share);
     }
+}
+
+/// Makes both halves of all rows of in-plane slopes, of `half` nodes each, ascend and meet.
+pub(super) fn ascending_rows(nodes: &mut [Node], half: usize) {
+    nodes.chunks_exact_mut(2 * half).for_each(join);
+    nodes.chunks_exact_mut(half).for_each(ascending_across);
+}
+
+/// Makes a row of slopes ascend, such as that of slopes across.
+pub(super) fn ascending_across(row: &mut [Node]) {
+    spread(row);
+    make_monotone(row);
 }
 
 fn pairs(values: &[f32]) -> Vec<Node> {
@@ -111,15 +128,9 @@ impl Slices {
         let (shadowing, slope, across) = (shadowing?, slope?, across?);
         let mut slices = Self::new([shadowing, slope], gamma, s);
         slices.across = across.nodes;
-        spread(&mut slices.across);
-        make_monotone(&mut slices.across);
+        ascending_across(&mut slices.across);
         slices.scales = [slices.half_cells, slices.across.len() - 1].map(MirroredRoot::scale);
         slices.across_cells = cubic_cells(&slices.across, 1.0);
-        if slices.peeled {
-            let moment = f64::from(slices.first_moment());
-            let share = |t: f64| slices.share_of_moment(moment, t);
-            slices.heavy = Heavy::new(gamma, s, slices.rows, share);
-        }
         Ok(slices)
     }
 
@@ -135,13 +146,9 @@ impl Slices {
         };
         let (shadowing_cells, rows) = (shadowing.nodes.len() - 1, view.nodes.len() - 1);
         let mut slopes = slope.nodes;
-        slopes.chunks_exact_mut(2 * numbers.nodes.len()).for_each(join);
-        for half in slopes.chunks_exact_mut(numbers.nodes.len()) {
-            spread(half);
-            make_monotone(half);
-        }
+        ascending_rows(&mut slopes, numbers.nodes.len());
         slopes.resize(slopes.len() + numbers.nodes.len() * 2 + 1, [0.0; 2]);
-        Self {
+        let mut slices = Self {
             gamma,
             s: s_of_gamma(gamma) as f32,
             normals: Normals::new(s_of_gamma(gamma)),
@@ -159,7 +166,13 @@ impl Slices {
             across_cells: Vec::new(),
             scales: [0.0; 2],
             heavy: Heavy::default(),
+        };
+        if slices.peeled {
+            let moment = f64::from(slices.first_moment());
+            let share = |t: f64| slices.share_of_moment(moment, t);
+            slices.heavy = Heavy::new(gamma, s, slices.rows, share);
         }
+        slices
     }
 
     /// M₀ρ/area at the coordinate t of a view, from the table of G1.

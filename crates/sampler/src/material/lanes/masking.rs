@@ -14,6 +14,7 @@ use crate::vector::vec3;
 
 /// Returns 0, the G1 of NaN; cold, so that the common path stays short.
 #[cold]
+#[inline(never)]
 fn g1_of_nan<T: Default>() -> T {
     T::default()
 }

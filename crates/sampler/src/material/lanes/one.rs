@@ -61,7 +61,7 @@ impl<S: Shape> Surface<S> {
 
 /// [`Surface::sample`] of a shape with a heavy part, out of line so that calls of other shapes stay
 /// short.
-#[inline(never)]
+#[inline(always)]
 fn sample_heavy<S: Shape>(seed: S::Seed, sigma: [f32; 2], v: [f32; 3], u: [f32; 2]) -> Vec3 {
     let surface = Surface::new(S::of_seed(seed), sigma);
     let [x, y, z] = v;

@@ -1,0 +1,187 @@
+//! The general tables read at any σ and γ, nothing bound: the lobe of a hit where textures give
+//! both.
+//!
+//! A bound lobe collapses the γ axis of three tables, once for all its lookups. Here every lookup
+//! does it for the nodes that it reads: the same nodes with the same weights, so what the tables'
+//! certificates state holds. What binding does to whole rows of nodes afterwards (they ascend, and
+//! so do the cubics between them) is done to the rows of each node of γ beforehand, and to the two
+//! nodes of a lookup.
+
+use alloc::vec::Vec;
+
+use microfacet_core::Masking;
+use microfacet_core::Roughness;
+use microfacet_tables::Table;
+
+use super::batch::Batch;
+use super::coverage;
+use super::delegate::lobe_of_surface;
+use super::distribution::{Facet, MicrofacetDistribution};
+use super::family_part::{AtShape, Part};
+use super::key::LobeKey;
+use super::reflecting::Reflecting;
+use super::roughness::clamped;
+use super::surface::Surface;
+use super::tabulated::Tabulated;
+use crate::error::{BatchError, MaterialError, same_lengths};
+use crate::vector::vec3;
+
+/// Lobes of every σ and γ that a set covers, read from its tables without binding: for materials
+/// whose roughness and tail are textures.
+///
+/// Made once by [`Tables::family`](crate::Tables::family), in some milliseconds and a megabyte;
+/// [`at`](Self::at) is then the lobe of a hit.
+///
+/// ```
+/// # #[cfg(feature = "embedded")] {
+/// use microfacet_sampler::{MicrofacetDistribution, Tables};
+///
+/// let family = Tables::embedded().family()?; // once
+/// for (sigma, gamma) in [(0.1, 1.7), (0.2, 2.5), (0.3, f32::INFINITY)] {
+///     let lobe = family.at(sigma, gamma); // at each hit
+///     let v = [0.6, 0.0, 0.8];
+///     let m = lobe.sample_visible_normal(v, [0.3, 0.7]);
+/// #   assert!(m[2] > 0.0 && lobe.g1(v) < 1.0);
+/// }
+/// # }
+/// # Ok::<(), microfacet_sampler::MaterialError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Family {
+    /// By falling γ: that of whole distributions, then that of peeled ones; one may be missing.
+    parts: Vec<Part>,
+    /// Smaller γ are those of the last part.
+    seam: f32,
+}
+
+/// The lobe of a [`Family`] at one σ and γ: that of a hit.
+///
+/// It is small and `Copy`, and no memory is allocated for it. Normals differ from those of the
+/// [`StudentT`](crate::StudentT) of the same σ and γ by 1e-5 of the CDF, and G1 by 2e-6, at most;
+/// D is the same closed form. There is no density of the tables themselves:
+/// [`table_pdf`](Tabulated::table_pdf) is the analytic one.
+#[derive(Clone, Copy, Debug)]
+pub struct FamilyLobe<'a> {
+    surface: Surface<AtShape<'a>>,
+    gamma: f32,
+}
+
+impl Family {
+    /// From the tables of each kind with the widest range of shapes.
+    pub(crate) fn from_tables(tables: &[Table]) -> Result<Self, MaterialError> {
+        let parts: Vec<Part> =
+            coverage::LOBE[1].iter().filter_map(|&kind| Part::new(tables, kind)).collect();
+        let Some(last) = parts.last() else {
+            return Err(MaterialError::NoRange);
+        };
+        let seam = if parts.len() > 1 { parts[0].gammas[0] } else { last.gammas[1] };
+        Ok(Self { seam, parts })
+    }
+
+    /// The lobe of roughness σ, one number or a pair for x and y, and shape γ.
+    ///
+    /// σ is clamped to [1e-8, 1e6] and γ to [what the tables hold](Self::gammas); NaN is taken to
+    /// the lower end. What is very smooth is
+    /// [a mirror](MicrofacetDistribution::is_effectively_smooth).
+    #[inline(always)]
+    #[must_use]
+    pub fn at(&self, sigma: impl Into<Roughness>, gamma: f32) -> FamilyLobe<'_> {
+        let small = usize::from(gamma < self.seam && self.parts.len() > 1);
+        let part = &self.parts[small];
+        let gamma = part.clamped(gamma);
+        let surface = Surface::new(AtShape::new(part, gamma), clamped(sigma.into()));
+        FamilyLobe { surface, gamma }
+    }
+
+    /// The shapes γ that are read from tables, as ranges [smallest, largest], of falling γ: in the
+    /// default set [1.8, ∞] and [1.501, 1.8].
+    pub fn gammas(&self) -> impl Iterator<Item = [f32; 2]> + '_ {
+        self.parts.iter().map(|part| part.gammas)
+    }
+
+    /// A visible normal for each hit: of σx and σy, γ, a view and a pair of numbers, into `m`.
+    ///
+    /// # Errors
+    /// [`BatchError`] if the slices are not of one length; `m` is then untouched.
+    pub fn sample_batch<V: Copy + Into<[f32; 3]>, M: From<[f32; 3]>>(
+        &self,
+        sigma: &[[f32; 2]],
+        gamma: &[f32],
+        v: &[V],
+        u: &[[f32; 2]],
+        m: &mut [M],
+    ) -> Result<(), BatchError> {
+        same_lengths(&[
+            ("sigma", sigma.len()),
+            ("gamma", gamma.len()),
+            ("v", v.len()),
+            ("u", u.len()),
+            ("m", m.len()),
+        ])?;
+        let hits = sigma.iter().zip(gamma).zip(v).zip(u).zip(m);
+        for ((((sigma, gamma), v), u), m) in hits {
+            *m = self.at(*sigma, *gamma).sample_visible_normal(*v, *u).into();
+        }
+        Ok(())
+    }
+
+    /// G1 for each hit: of σx and σy, γ and a view, into `g1`.
+    ///
+    /// # Errors
+    /// [`BatchError`] if the slices are not of one length; `g1` is then untouched.
+    pub fn g1_batch<V: Copy + Into<[f32; 3]>>(
+        &self,
+        sigma: &[[f32; 2]],
+        gamma: &[f32],
+        v: &[V],
+        g1: &mut [f32],
+    ) -> Result<(), BatchError> {
+        same_lengths(&[
+            ("sigma", sigma.len()),
+            ("gamma", gamma.len()),
+            ("v", v.len()),
+            ("g1", g1.len()),
+        ])?;
+        for (((sigma, gamma), v), g1) in sigma.iter().zip(gamma).zip(v).zip(g1) {
+            *g1 = self.at(*sigma, *gamma).g1(*v);
+        }
+        Ok(())
+    }
+
+    /// Bytes of table.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.parts.iter().map(Part::bytes).sum()
+    }
+}
+
+impl<'a> FamilyLobe<'a> {
+    /// σx and σy.
+    #[must_use]
+    pub fn sigma(&self) -> [f32; 2] {
+        self.surface.scales.sigma
+    }
+
+    /// The shape γ.
+    #[must_use]
+    pub fn gamma(&self) -> f32 {
+        self.gamma
+    }
+
+    #[inline(always)]
+    fn surface(&self) -> Surface<AtShape<'a>> {
+        self.surface
+    }
+}
+
+lobe_of_surface!(FamilyLobe<'_>);
+
+impl Tabulated for FamilyLobe<'_> {
+    fn key(&self) -> LobeKey {
+        LobeKey::of_family(self.sigma(), f64::from(self.gamma))
+    }
+
+    fn bytes(&self) -> usize {
+        self.surface.shape.bytes()
+    }
+}

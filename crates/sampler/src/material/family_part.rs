@@ -1,0 +1,312 @@
+//! The tables of a [`Family`](super::family::Family), and one γ of them as lookups read it.
+
+use core::array::from_fn;
+
+use microfacet_core::math::sqrt;
+use microfacet_core::shape::{S_END, gamma_of_s};
+use microfacet_tables::axis::half_tangent::Lines;
+use microfacet_tables::axis::hermite::{
+    Cell, Node, basis, cubic, cubic_lanes, hermite, hermite_lanes,
+};
+use microfacet_tables::axis::{MirroredRoot, Rational};
+use microfacet_tables::{Interpolation, Kind, Mapping, Table};
+use wide::f32x4;
+
+use super::heavy::{Tail, cell_of_share};
+use super::lanes::four::LANES;
+use super::lanes::sum;
+use super::normals::Normals;
+use super::slices::{Slice, Slices, ascending_across, ascending_rows};
+use super::surface::Shape;
+use super::windows::{Planes, Window, Windows};
+
+/// Stands for γ = ∞: the reciprocal of γ − 1, and its square, are still normal numbers.
+const LARGEST: f64 = 1e18;
+
+/// The tables of the shapes of one kind of in-plane slopes, whole or peeled.
+#[derive(Clone, Debug)]
+pub(crate) struct Part {
+    /// The smallest and the largest γ.
+    pub(super) gammas: [f32; 2],
+    /// Of in-plane slopes, of slopes across and of G1.
+    windows: Windows<3>,
+    /// In-plane slopes, as in [`Slices`].
+    slopes: Planes<Node>,
+    lines: Lines,
+    half: u32,
+    scales: [f32; 2],
+    /// Slopes across, the half for u > ½.
+    across: Planes<Node>,
+    /// G1/q over the number of cells.
+    masking: Planes<Node>,
+    masking_view: Rational,
+    masking_cells: f32,
+    /// The share of the heavy part, by cell of the view coordinate; empty for whole distributions.
+    shares: Planes<Cell>,
+}
+
+impl Part {
+    /// Of the table of in-plane slopes of a kind with the widest range of γ, and the tables of G1
+    /// and of slopes across that hold most of it; `None` where there is no range.
+    pub(super) fn new(tables: &[Table], kind: Kind) -> Option<Self> {
+        let interpolated = |kind: Kind| {
+            let of = move |table: &&Table| {
+                table.kind == kind && table.axes[0].interpolation == Interpolation::Lagrange4
+            };
+            tables.iter().filter(of)
+        };
+        let within = |range: [f64; 2], table: &Table| {
+            let [low, high] = table.subject.lobe.s();
+            [range[0].max(low), range[1].min(high)]
+        };
+        let width = |range: [f64; 2]| range[1] - range[0];
+        let most = |kind: Kind, range: [f64; 2]| {
+            let by = |a: &&Table, b: &&Table| {
+                // The first of those that hold as much.
+                width(within(range, a)).total_cmp(&width(within(range, b))).reverse()
+            };
+            let table = interpolated(kind).min_by(by)?;
+            Some((table, within(range, table)))
+        };
+        let (slope, range) = most(kind, [0.0, S_END])?;
+        let (shadowing, range) = most(Kind::Shadowing, range)?;
+        let (across, range) = most(Kind::VisibleSlopeConditional, range)?;
+        (width(range) > 0.0).then(|| Self::of([slope, shadowing, across], range))
+    }
+
+    fn of([slope, shadowing, across]: [&Table; 3], range: [f64; 2]) -> Self {
+        let (Mapping::HalfTangent(view), Mapping::Rational(masking_view)) =
+            (slope.axes[1].mapping, shadowing.axes[1].mapping)
+        else {
+            unreachable!("validated on load")
+        };
+        let (rows, numbers) = (slope.axes[1].len() - 1, slope.axes[2].nodes.len());
+        let (cells, across_cells) = (shadowing.axes[1].len() - 1, across.axes[1].len() - 1);
+        // One row and one node more than the table has are read with weight 0.
+        let axes = [slope, across, shadowing].map(|table| &table.axes[0].nodes[..]);
+        let windows = Windows::new(axes, range);
+        let slopes = Planes::new(slope.axes[0].nodes.len(), 2 * numbers + 1, |i| {
+            let mut nodes = Slice::node(slope, i).nodes;
+            ascending_rows(&mut nodes, numbers);
+            nodes
+        });
+        let across = Planes::new(across.axes[0].nodes.len(), 1, |i| {
+            let mut nodes = Slice::node(across, i).nodes;
+            ascending_across(&mut nodes);
+            nodes
+        });
+        let masking = Planes::new(shadowing.axes[0].nodes.len(), 1, |i| {
+            let scaled = |x: f32| (f64::from(x) / cells as f64) as f32;
+            Slice::node(shadowing, i).nodes.into_iter().map(|node| node.map(scaled)).collect()
+        });
+        let shares = |i: usize| {
+            let s = shadowing.axes[0].nodes[i];
+            let slices = [Slice::node(shadowing, i), Slice::node(slope, 0)];
+            Slices::new(slices, gamma_of_s(s), s).heavy.shares
+        };
+        let peeled = slope.kind == Kind::VisibleSlopePeeled;
+        Self {
+            gammas: [range[1], range[0]].map(|s| gamma_of_s(s).min(LARGEST) as f32),
+            windows,
+            slopes,
+            lines: view.lines(rows as f32),
+            half: numbers as u32,
+            scales: [numbers - 1, across_cells].map(MirroredRoot::scale),
+            across,
+            masking,
+            masking_view,
+            masking_cells: cells as f32,
+            shares: if peeled {
+                Planes::new(shadowing.axes[0].nodes.len(), 0, shares)
+            } else {
+                Planes::default()
+            },
+        }
+    }
+
+    /// γ within the range, NaN at its lower end; finite.
+    #[inline(always)]
+    pub(super) fn clamped(&self, gamma: f32) -> f32 {
+        // `max` takes NaN to the other number, which `clamp` would keep.
+        gamma.max(self.gammas[0]).min(self.gammas[1])
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        self.windows.bytes()
+            + self.slopes.bytes()
+            + self.across.bytes()
+            + self.masking.bytes()
+            + self.shares.bytes()
+    }
+}
+
+/// One γ of a part.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AtShape<'a> {
+    part: &'a Part,
+    gamma: f32,
+    s: f32,
+    /// κ of G1's coordinate.
+    kappa: f32,
+    tail: Tail,
+    slopes: Window,
+    across: Window,
+    masking: Window,
+}
+
+impl<'a> AtShape<'a> {
+    /// Of a γ within the part's range.
+    #[inline(always)]
+    pub(super) fn new(part: &'a Part, gamma: f32) -> Self {
+        let (above_one, twice) = (gamma - 1.0, 2.0 * gamma - 3.0);
+        let (s, exponent) = (1.0 / above_one, 1.0 / twice);
+        // 2 − s without cancellation.
+        let [slopes, across, masking] = part.windows.at(twice * s);
+        Self {
+            part,
+            gamma,
+            s,
+            // As `Rational::kappa`: scale/(2 − s).
+            kappa: part.masking_view.scale as f32 * (above_one * exponent),
+            tail: Tail { exponent, root_s: sqrt(s) },
+            slopes,
+            across,
+            masking,
+        }
+    }
+
+    pub(super) fn bytes(self) -> usize {
+        self.part.bytes()
+    }
+}
+
+impl<'a> Shape for AtShape<'a> {
+    type Seed = (&'a Part, f32);
+
+    #[inline(always)]
+    fn seed(self) -> Self::Seed {
+        (self.part, self.gamma)
+    }
+
+    #[inline(always)]
+    fn of_seed((part, gamma): Self::Seed) -> Self {
+        Self::new(part, gamma)
+    }
+
+    #[inline(always)]
+    fn s(self) -> f32 {
+        self.s
+    }
+
+    #[inline(always)]
+    fn peeled(self) -> bool {
+        !self.part.shares.is_empty()
+    }
+
+    #[inline(always)]
+    fn lines(self) -> Lines {
+        self.part.lines
+    }
+
+    #[inline(always)]
+    fn half(self) -> u32 {
+        self.part.half
+    }
+
+    #[inline(always)]
+    fn scales(self) -> [f32; 2] {
+        self.part.scales
+    }
+
+    /// The reads test themselves.
+    #[inline(always)]
+    fn reads(self, _high: usize, _across: usize) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn between(self, low: usize, high: usize, w: f32) -> f32x4 {
+        let nodes = self.part.slopes.between(self.slopes, low, high, w);
+        // Nodes of negative weight may make slopes leave the range in which the cubic ascends, see
+        // `limit_slopes`. `fast_max` takes NaN to the other number, which no normal is made of.
+        let [from, _, to, _] = nodes.to_array();
+        let limit = 3.0 * (to - from).max(0.0);
+        let most = f32x4::new([f32::MAX, limit, f32::MAX, limit]);
+        nodes.fast_max(f32x4::ZERO).fast_min(most)
+    }
+
+    #[inline(always)]
+    fn across(self, cell: usize, w: f32) -> f32 {
+        let pair = self.part.across.pair(self.across, cell);
+        sum(pair * basis(f32x4::splat(w))).to_array()[0]
+    }
+
+    #[inline(always)]
+    fn across_lanes(self, cells: [i32; LANES], w: f32x4) -> f32x4 {
+        let pair = |i: usize| self.part.across.pair(self.across, cells[i] as u32 as usize);
+        hermite_lanes(f32x4::transpose(from_fn(pair)), w)
+    }
+
+    #[inline(always)]
+    fn share(self, at: f32) -> f32 {
+        let (cell, w) = cell_of_share(f32x4::splat(at));
+        let cell = self.part.shares.cell(self.masking, cell.to_array()[0] as u32 as usize);
+        cubic(&cell, w.to_array()[0])
+    }
+
+    #[inline(always)]
+    fn shares(self, at: f32x4) -> f32x4 {
+        let (cells, w) = cell_of_share(at);
+        let cells = cells.to_array();
+        let cell =
+            |i: usize| f32x4::new(self.part.shares.cell(self.masking, cells[i] as u32 as usize));
+        cubic_lanes(f32x4::transpose(from_fn(cell)), w)
+    }
+
+    #[inline(always)]
+    fn tail(self) -> Tail {
+        self.tail
+    }
+
+    #[inline(always)]
+    fn kappa(self) -> f32 {
+        self.kappa
+    }
+
+    #[inline(always)]
+    fn masking_view(self) -> (Rational, f32) {
+        (self.part.masking_view, self.part.masking_cells)
+    }
+
+    #[inline(always)]
+    fn masking(self, cell: usize, w: f32) -> Option<f32> {
+        let nodes = self.part.masking.pair(self.masking, cell);
+        let [v0, s0, v1, s1] = nodes.to_array();
+        Some(hermite([v0, s0], [v1, s1], w))
+    }
+
+    #[inline(always)]
+    fn masking_of_two(self, cells: [usize; 2], w: f32x4) -> Option<f32x4> {
+        let [a, b] = cells.map(|cell| self.part.masking.pair(self.masking, cell));
+        // Lanes [v0, v0, …] of both, and so on, by one transposition.
+        let nodes = f32x4::transpose([a, b, a, b]);
+        Some(hermite_lanes(nodes, w))
+    }
+
+    #[inline(always)]
+    fn masking_lanes(self, cells: [i32; LANES], w: f32x4) -> f32x4 {
+        let pair = |i: usize| self.part.masking.pair(self.masking, cells[i] as u32 as usize);
+        hermite_lanes(f32x4::transpose(from_fn(pair)), w)
+    }
+
+    #[inline(always)]
+    fn first_moment(self) -> f32 {
+        let [first, ..] = self.part.masking.pair(self.masking, 0).to_array();
+        self.kappa / (first * self.part.masking_cells)
+    }
+
+    #[inline(always)]
+    fn d(self, r2: f32, z2: f32, length2: f32, scale: f32) -> f32 {
+        Normals::of_shape(self.s, self.gamma).d(r2, z2, length2, scale)
+    }
+}
