@@ -65,7 +65,7 @@ impl ShapeTables {
             root_s: slices.heavy.root_s,
         };
         Self {
-            normals: [lobe.normals.s, lobe.normals.power],
+            normals: [lobe.normals.law.s, lobe.normals.law.power],
             kappa: slices.kappa,
             masking_crowded: slices.shadowing_view.crowded,
             masking_cells: slices.shadowing_cells,

@@ -12,7 +12,7 @@ use core::f32::consts::PI;
 use glam::Vec3;
 use microfacet_core::math::{sqrt, unit};
 use microfacet_core::shape::s_of_gamma;
-use microfacet_core::{Masking, Roughness, saturated};
+use microfacet_core::{Masking, Roughness};
 use microfacet_tables::Table;
 use microfacet_tables::axis::MirroredRoot;
 use microfacet_tables::axis::half_tangent::Slope;
@@ -100,25 +100,25 @@ impl StudentT {
         if !(gamma > 1.5) {
             return Err(MaterialError::Gamma(gamma));
         }
-        let slices = Slices::from_tables(tables, gamma, s_of_gamma(gamma))?;
-        Ok(Self::new(sigma, gamma, slices))
+        let s = s_of_gamma(gamma);
+        let slices = Slices::from_tables(tables, gamma, s)?;
+        Ok(Self::new(sigma, gamma, slices, Normals::new(s)))
     }
 
     /// Holds the tables of a distribution outside the family, whose unit slopes are slopes over σ.
     pub(crate) fn for_radial(sigma: f32, slices: Slices) -> Self {
-        Self::new([sigma; 2], 2.0, slices)
+        Self::new([sigma; 2], 2.0, slices, Normals::untabulated(1.0))
     }
 
-    fn new([sigma_x, sigma_y]: [f32; 2], gamma: f64, slices: Slices) -> Self {
-        let s = s_of_gamma(gamma);
+    fn new([sigma_x, sigma_y]: [f32; 2], gamma: f64, slices: Slices, normals: Normals) -> Self {
         Self {
             sigma_x,
             sigma_y,
             gamma,
-            s: s as f32,
+            s: s_of_gamma(gamma) as f32,
             kappa_sigma: [slices.kappa * sigma_x, slices.kappa * sigma_y],
             slices,
-            normals: Normals::new(s),
+            normals,
             inverse_sigma: [1.0 / sigma_x, 1.0 / sigma_y],
             scale: 1.0 / (PI * sigma_x * sigma_y),
         }
@@ -129,7 +129,8 @@ impl StudentT {
     /// # Errors
     /// [`MaterialError::Sigma`] unless both roughnesses lie in [1e-8, 1e6].
     pub fn with_roughness(&self, roughness: impl Into<Roughness>) -> Result<Self, MaterialError> {
-        Ok(Self::new(checked(roughness.into())?, self.gamma, self.slices.clone()))
+        let sigma = checked(roughness.into())?;
+        Ok(Self::new(sigma, self.gamma, self.slices.clone(), self.normals.clone()))
     }
 
     /// σx and σy.
@@ -206,8 +207,7 @@ impl StudentT {
     /// σ, `length2` the square of its length before that, `scale` is 1/(πσxσy).
     #[inline(always)]
     pub(crate) fn d_of_unit(&self, m: Vec3, length2: f32, scale: f32) -> f32 {
-        let root = self.normals.root(m.x * m.x + m.y * m.y, m.z * m.z, length2);
-        saturated((scale * root) * root)
+        self.normals.d(m.x * m.x + m.y * m.y, m.z * m.z, length2, scale)
     }
 
     /// D of a normal above the horizon, by its direction and the square of its length.
@@ -273,7 +273,9 @@ impl StudentT {
 }
 
 impl MicrofacetDistribution for StudentT {
-    /// D(m), with a relative error of a few ulp times its exponent (about 1e-6 times |ln D σxσy|).
+    /// D(m), with a relative error of up to 3e-7 (2 + γ) for γ ≤ 16. For larger γ, and where the
+    /// cosine times σ is below 1e-19, it is a few ulp times its exponent (about 1e-6 times
+    /// |ln D σxσy|).
     ///
     /// For γ < 2 D grows without limit towards the horizon and overflows to `f32::MAX`, not to ∞.
     #[inline]
@@ -362,7 +364,7 @@ impl Tabulated for StudentT {
     }
 
     fn bytes(&self) -> usize {
-        self.slices.bytes()
+        self.slices.bytes() + self.normals.bytes()
     }
 }
 
