@@ -5,7 +5,7 @@
 //! The polynomials interpolate at Chebyshev points.
 
 use core::f32::consts::{LN_2, TAU};
-use core::ops::{Add, Mul, Sub};
+use core::ops::{Add, Mul};
 
 use wide::{bytemuck, f32x4, i32x4};
 
@@ -50,22 +50,42 @@ pub(crate) fn log2_growth(whole: f32, part: f32) -> f32 {
 /// scale·(1 + part/whole)ᵖ, to a relative error of 4e-7 times one plus its logarithm, arguments as
 /// for [`log2_growth`]; 0 where the power is below 2⁻¹²⁶ or NaN. The power must not exceed 2¹²⁶.
 ///
-/// The steps are ordered so that the fewest wait for each other: D is on the critical path of a
-/// BSDF.
+/// The fraction of the exponential comes from a table: of two polynomials this one was the longer.
 #[inline(always)]
 pub(crate) fn scaled_power_of_growth(whole: f32, part: f32, power: f32, scale: f32) -> f32 {
+    // A sum with this number is rounded to a multiple of 1/FRACTIONS, and its last bits are that.
+    const SHIFT: f32 = 12_582_912.0 / FRACTIONS as f32;
+    const WHOLE: u32 = FRACTIONS.trailing_zeros();
     let [exponent, t] = growth(whole, part);
-    let y = t * t;
-    // A smaller square would be subnormal, and slow; its terms vanish next to the first.
-    let high = y.max(1e-16);
-    let [a, b, c, d] = HALF_TANGENT;
-    let series = (a + y * b) + (high * high) * (c + y * d);
-    let x = exponent * power + (t * power) * series;
+    let x = exponent * power + (t * power) * series_of_half_tangent(t * t);
     let inside = x >= LEAST_EXPONENT;
-    let [fraction, shifted] = whole_and_fraction(if inside { x } else { LEAST_EXPONENT });
-    let whole = f32::from_bits((shifted.to_bits() << 23).wrapping_add(127 << 23));
-    if inside { fraction * (whole * scale) } else { 0.0 }
+    let x = if inside { x } else { LEAST_EXPONENT };
+    let shifted = x + SHIFT;
+    let w = x - (shifted - SHIFT);
+    let bits = shifted.to_bits();
+    // The whole part of x is added to the exponent of the fraction's power.
+    let fraction = FRACTION_POWERS[bits as usize % FRACTIONS].to_bits();
+    let nearest =
+        f32::from_bits(fraction.wrapping_add(bits >> WHOLE << (f32::MANTISSA_DIGITS - 1)));
+    // 2ʷ − 1 to 3e-8. Added to 1 instead of `nearest`, it would be rounded once more.
+    let excess = w * (LN_2 + w * 0.240_226_51);
+    if inside { (nearest + nearest * excess) * scale } else { 0.0 }
 }
+
+/// 2^(i/FRACTIONS).
+static FRACTION_POWERS: [f32; FRACTIONS] = {
+    /// 2^(1/64).
+    const STEP: f64 = 1.010_889_286_051_700_5;
+    let mut powers = [0.0; FRACTIONS];
+    let (mut i, mut power) = (0, 1.0);
+    while i < FRACTIONS {
+        powers[i] = power as f32;
+        power *= STEP;
+        i += 1;
+    }
+    powers
+};
+const FRACTIONS: usize = 64;
 
 /// The whole number e and the half tangent t, |t| ≤ 0.2, of 1 + part/whole = 2ᵉ (1+t)/(1−t).
 ///
@@ -96,25 +116,28 @@ pub(crate) fn exp2(x: f32x4) -> f32x4 {
 const LEAST_EXPONENT: f32 = -126.0;
 
 /// A number, or lanes of them: the formulas are written once for both.
-trait Number: Copy + From<f32> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
+trait Number: Copy + From<f32> + Add<Output = Self> + Mul<Output = Self> {}
 impl Number for f32 {}
 impl Number for f32x4 {}
 
-/// log₂ of (1+t)/(1−t), 2 artanh(t)/ln 2, over t, by powers of t²: for |t| ≤ 0.2, to 3e-9.
-const HALF_TANGENT: [f32; 4] = [2.885_390_07, 0.961_802_25, 0.576_390_26, 0.439_189_35];
-
+/// log₂ of (1+t)/(1−t), 2 artanh(t)/ln 2, by powers of t².
 #[inline(always)]
 fn log2_of_half_tangent<T: Number>(t: T) -> T {
-    let y = t * t;
-    let [a, b, c, d] = HALF_TANGENT.map(T::from);
-    // Horner's scheme: in the faster split into halves y² may be subnormal, and slow.
-    t * (a + y * (b + y * (c + y * d)))
+    t * series_of_half_tangent(t * t)
+}
+
+/// [`log2_of_half_tangent`] over t, from y = t²: for |t| ≤ 0.2, to 3e-9.
+#[inline(always)]
+fn series_of_half_tangent<T: Number>(y: T) -> T {
+    // Horner's scheme: in the split into halves y² may be subnormal, and slow.
+    let [a, b, c, d] = [2.885_390_07, 0.961_802_25, 0.576_390_26, 0.439_189_35].map(T::from);
+    a + y * (b + y * (c + y * d))
 }
 
 /// 2ʷ, and a number whose last bits are the whole number x − w; w ∈ [−½, ½].
 #[inline(always)]
-fn whole_and_fraction<T: Number>(x: T) -> [T; 2] {
-    let c = T::from;
+fn whole_and_fraction(x: f32x4) -> [f32x4; 2] {
+    let c = f32x4::splat;
     // A sum with `shift` is rounded to a whole number.
     let shift = c(12_582_912.0);
     let shifted = x + shift;

@@ -77,7 +77,7 @@ impl<'a> SlopeBelowHorizon<'a> {
         let Self { slices, a } = *self;
         if a > NEAR {
             // ∫ₐ^∞ x p(x) dx = M₀ (1 + s a²)^(−k), and k = 1/s − ½.
-            let exponent = (0.5 * slices.s - 1.0) * slices.normals.log2_growth(a * a);
+            let exponent = (0.5 * slices.s - 1.0) * slices.normals.law.log2_growth(a * a);
             // Products with a smaller number would be subnormal, and slow.
             let decay = exp2(f32x4::splat(exponent.max(-100.0))).to_array()[0];
             return slices.first_moment() * decay * share.at(1.0 / (a * a));

@@ -15,7 +15,7 @@ use wide::f32x4;
 use super::heavy::{Tail, cell_of_share};
 use super::lanes::four::LANES;
 use super::lanes::sum;
-use super::normals::Normals;
+use super::normals::PowerLaw;
 use super::slices::{Slice, Slices, ascending_across, ascending_rows};
 use super::surface::Shape;
 use super::windows::{Planes, Window, Windows};
@@ -307,6 +307,6 @@ impl<'a> Shape for AtShape<'a> {
 
     #[inline(always)]
     fn d(self, r2: f32, z2: f32, length2: f32, scale: f32) -> f32 {
-        Normals::of_shape(self.s, self.gamma).d(r2, z2, length2, scale)
+        PowerLaw::of_shape(self.s, self.gamma).d(r2, z2, length2, scale)
     }
 }

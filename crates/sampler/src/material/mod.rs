@@ -5,11 +5,11 @@
 //! ([`slices`]) for masking and visible normals, for the shapes that all of them cover
 //! ([`coverage`]); [`lanes`] are its lookups in SIMD, with the part that no table holds from
 //! [`heavy`], and [`horizon`] corrects normals that rounding has moved out of their domain.
-//! [`normals`] is D in closed form. [`table_pdf`] is the density of what is drawn, and [`bounded`]
-//! leaves out normals that cannot reflect. [`ellipsoid`] transforms directions by a [`matrix`] to a
-//! Student-t, and draws by rejection for views [`below_horizon`]; [`radial`] has tables of its own,
-//! and [`ggx`] and the [`smooth`] surface need none. [`key`] identifies a lobe to albedo tables,
-//! and [`shape`] is what exports write of one.
+//! [`normals`] is D in closed form, with a [`power_table`] for its power. [`table_pdf`] is the
+//! density of what is drawn, and [`bounded`] leaves out normals that cannot reflect. [`ellipsoid`]
+//! transforms directions by a [`matrix`] to a Student-t, and draws by rejection for views
+//! [`below_horizon`]; [`radial`] has tables of its own, and [`ggx`] and the [`smooth`] surface need
+//! none. [`key`] identifies a lobe to albedo tables, and [`shape`] is what exports write of one.
 
 mod batch;
 mod below_horizon;
@@ -28,6 +28,7 @@ mod lanes;
 mod lobe;
 mod matrix;
 mod normals;
+mod power_table;
 mod radial;
 mod reflecting;
 mod roughness;

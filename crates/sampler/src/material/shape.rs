@@ -65,7 +65,7 @@ impl ShapeTables {
             root_s: slices.heavy.tail.root_s,
         };
         Self {
-            normals: [slices.normals.s, slices.normals.power],
+            normals: [slices.normals.law.s, slices.normals.law.power],
             kappa: slices.kappa,
             masking_crowded: slices.shadowing_view.crowded,
             masking_cells: slices.shadowing_cells,

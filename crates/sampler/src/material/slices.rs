@@ -127,6 +127,7 @@ impl Slices {
         let [shadowing, slope, across] = coverage::LOBE.map(find);
         let (shadowing, slope, across) = (shadowing?, slope?, across?);
         let mut slices = Self::new([shadowing, slope], gamma, s);
+        slices.normals = Normals::new(s);
         slices.across = across.nodes;
         ascending_across(&mut slices.across);
         slices.scales = [slices.half_cells, slices.across.len() - 1].map(MirroredRoot::scale);
@@ -151,7 +152,7 @@ impl Slices {
         let mut slices = Self {
             gamma,
             s: s_of_gamma(gamma) as f32,
-            normals: Normals::new(s_of_gamma(gamma)),
+            normals: Normals::untabulated(s_of_gamma(gamma)),
             shadowing: cubic_cells(&shadowing.nodes, 1.0 / shadowing_cells as f64),
             shadowing_cells: shadowing_cells as f32,
             kappa: shadowing_view.kappa(s) as f32,
@@ -199,6 +200,7 @@ impl Slices {
         size_of_val(&self.shadowing[..])
             + size_of_val(&self.slope[..])
             + size_of_val(&self.across_cells[..])
+            + self.normals.bytes()
     }
 }
 
