@@ -6,4 +6,5 @@ mod common;
 mod error_maps;
 mod max_bytes;
 mod plan;
+mod ranges;
 mod validate;

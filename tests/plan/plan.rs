@@ -14,7 +14,7 @@ use microfacet_tables::{
 
 use crate::common::{json, ok, refused, run};
 
-const DRAFT: Target = Target::Quality(Quality::Draft, Precision::F32);
+pub(crate) const DRAFT: Target = Target::Quality(Quality::Draft, Precision::F32);
 
 /// A recipe of materials: name, σ and γ as TOML.
 fn recipe(materials: &[[&str; 3]]) -> String {

@@ -2,6 +2,7 @@
 
 mod gltf;
 mod hostile;
+mod images;
 mod materialx;
 mod mitsuba;
 mod pbrt;

@@ -20,6 +20,7 @@ pub mod report_sphere;
 pub mod reproduced;
 pub mod sawicki;
 pub mod spheres;
+pub mod stand_in;
 pub mod student_t_paper;
 pub mod table_design;
 
@@ -49,7 +50,7 @@ const fn study(name: &'static str, what: &'static str, run: fn(&[String]) -> Out
 }
 
 /// All studies, by name.
-pub const STUDIES: [Study; 18] = [
+pub const STUDIES: [Study; 19] = [
     study(
         "albedo_convergence",
         "error against time of one directional albedo",
@@ -78,6 +79,11 @@ pub const STUDIES: [Study; 18] = [
     study("reproduced", "numbers that papers print beside figures", reproduced::run),
     study("sawicki", "the equations of Sawicki 2021", sawicki::run),
     study("spheres", "figures 7 to 9 of Ribardiere et al. 2017; --help", spheres::run),
+    study(
+        "stand_in",
+        "how far the albedo of a round lobe is off that of an anisotropic one",
+        stand_in::run,
+    ),
     study("student_t_paper", "the equations of Ribardiere et al. 2017", student_t_paper::run),
     study("table_design", "designs of the table of visible slopes", table_design::run),
 ];

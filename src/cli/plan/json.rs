@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use microfacet_baker::distribution::Distribution;
-use microfacet_baker::plan::{Verdict, entry};
+use microfacet_baker::plan::{AlbedoVerdict, StandIn, Verdict, entry};
 use microfacet_baker::scene::{Ignored, Material};
 use microfacet_baker::table_spec::TableSpec;
 use microfacet_report::words::verdict::{albedo_reason, reason};
@@ -17,7 +17,7 @@ impl Outline<'_> {
     pub(in crate::cli) fn materials(&self) -> Vec<Value> {
         let Self { scene, plan, .. } = self;
         let verdicts = plan.verdicts.iter().zip(&plan.albedo_verdicts);
-        let material = |(material, (verdict, albedo)): (&Material, (_, _))| {
+        let material = |(material, (verdict, albedo)): (&Material, (_, &AlbedoVerdict))| {
             let [short, long] = reason(verdict);
             let other = match *verdict {
                 Verdict::Same { as_material: i, .. } | Verdict::Within { of_material: i, .. } => {
@@ -30,13 +30,15 @@ impl Outline<'_> {
                 lobe: LobeSpec { distribution, theta, .. }, masking, fresnel, ..
             } = entry(material);
             let of_family = distribution.is_none();
+            let stand_in = StandIn::of(material)
+                .filter(|_| matches!(albedo, AlbedoVerdict::Bake(_) | AlbedoVerdict::Embedded));
             json!({
                 "name": material.name, "lobe": material.origin.lobe, "place": material.origin.place.to_string(),
                 "sigma": material.lobe.sigmas(),
                 "gamma": of_family.then(|| texts(material.lobe.gamma)),
                 "distribution": distribution, "theta": theta, "masking": masking, "fresnel": fresnel,
                 "verdict": short, "why": long, "shapes": verdict.need(),
-                "shares_with": other, "albedo": albedo_reason(albedo),
+                "shares_with": other, "albedo": albedo_reason(albedo), "stand_in": stand_in,
             })
         };
         scene.materials.iter().zip(verdicts).map(material).collect()
@@ -76,7 +78,7 @@ impl Report<'_> {
     pub(super) fn json(&self) -> Value {
         let Self { outline, general, milliseconds } = self;
         let (mut shapes, mut distributions, mut albedos) = (Vec::new(), Vec::new(), Vec::new());
-        for Part { tables, cost, names } in &outline.parts {
+        for Part { tables, cost, names, .. } in &outline.parts {
             match tables {
                 Tables::Shapes(need, specs) => {
                     let table = |spec: &TableSpec| {

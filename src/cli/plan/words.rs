@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use microfacet_baker::bake::albedo::{AlbedoLobe, AlbedoSpec};
 use microfacet_baker::distribution::Distribution;
 use microfacet_baker::plan::{
-    AlbedoVerdict, AlbedoWish, Cost, Plan, RequiredShapes, Verdict, entry,
+    AlbedoVerdict, AlbedoWish, Cost, Plan, RequiredShapes, StandIn, Verdict, entry,
 };
 use microfacet_baker::scene::{Ignored, Scene};
 use microfacet_baker::table_set::{BakeError, costs};
@@ -60,6 +60,8 @@ pub(in crate::cli) struct Part<'a> {
     pub(super) tables: Tables<'a>,
     pub(super) cost: Cost,
     pub(super) names: Vec<&'a str>,
+    /// Those of the materials whose own lobes have no such table.
+    stand_ins: Vec<(&'a str, StandIn)>,
 }
 
 /// The tables of a part.
@@ -90,6 +92,22 @@ impl Part<'_> {
                 ["albedo".into(), of]
             }
         }
+    }
+
+    /// The materials that the tables are for, and how far off they are where they stand in.
+    fn purpose(&self) -> String {
+        if self.names.is_empty() {
+            return String::new();
+        }
+        let all = format!(", for {}", words::list(self.names.iter().copied()));
+        let largest = self.stand_ins.iter().map(|(_, of)| of.error).reduce(f64::max);
+        largest.map_or(all.clone(), |off| {
+            let names = words::list(self.stand_ins.iter().map(|(name, _)| *name));
+            format!(
+                "{all}; round lobes of sqrt(sigma_x sigma_y) stand in for those of {names}, whose E \
+                 may be {off} off"
+            )
+        })
     }
 
     /// Bytes and seconds in words; the bytes of tables that may be refined are estimates.
@@ -150,7 +168,7 @@ impl<'a> Outline<'a> {
         let albedos =
             albedos.map(|need| Ok(Tables::Albedo(Box::new(need.spec(quality, precision)?))));
         let part = |(tables, &cost): (Result<_, BakeError>, &Cost)| {
-            Ok(Part { tables: tables?, cost, names: Vec::new() })
+            Ok(Part { tables: tables?, cost, names: Vec::new(), stand_ins: Vec::new() })
         };
         let parts = shapes.chain(own).chain(albedos).zip(&costs).map(part);
         let mut parts = parts.collect::<Result<Vec<Part<'a>>, BakeError>>()?;
@@ -168,8 +186,13 @@ impl<'a> Outline<'a> {
                 _ => &[],
             };
             let albedos = albedos.iter().map(|i| first[1] + i);
+            let stand_in = StandIn::of(material).map(|it| (&material.name[..], it));
             for i in verdict.need().into_iter().chain(own).chain(albedos) {
-                parts[i].names.push(&material.name);
+                let Part { tables, names, stand_ins, .. } = &mut parts[i];
+                names.push(&material.name);
+                if matches!(tables, Tables::Albedo(spec) if spec.lobe.is_family()) {
+                    stand_ins.extend(stand_in);
+                }
             }
         }
         let total = costs.into_iter().sum();
@@ -266,11 +289,7 @@ impl<'a> Outline<'a> {
         for part in self.parts.iter().take(SHOWN) {
             let [what, of] = part.what();
             let tables = format!("{of}{}{}", words::count(part.count(), "table"), detail(part));
-            let names = match &part.names[..] {
-                [] => String::new(),
-                names => format!(", for {}", words::list(names.iter().copied())),
-            };
-            text += &line(baked, &what, &(tables + &names));
+            text += &line(baked, &what, &(tables + &part.purpose()));
         }
         if let Some(more @ [_, ..]) = self.parts.get(SHOWN..) {
             let tables = words::count(more.iter().map(Part::count).sum(), "table");

@@ -241,28 +241,42 @@ fn wants(
     if let Some(verdict) = unasked(material, options) {
         return Ok(Err(verdict));
     }
-    let (lobe, round) = (material.lobe.tabulated(), material.lobe.round());
-    let refracts = matches!(lobe.form(), LobeForm::Family | LobeForm::StudentT);
-    let exact = material.fresnel.iter().flat_map(|fresnel| fresnel.tabulated());
-    let exact = exact.filter(|reflectance| *reflectance != Reflectance::Mirror);
-    let of = |reflectance: Reflectance| {
-        // The model has refraction for isotropic lobes of the family only.
-        let lobe = if reflectance.indices().is_some() { &round } else { &lobe };
-        Want { lobe: lobe.clone(), reflectance, masking: material.masking.unwrap_or_default() }
+    let lobe = material.lobe.tabulated();
+    let of = |reflectance: Reflectance| Want {
+        lobe: tabulated(&material.lobe, &reflectance),
+        reflectance,
+        masking: material.masking.unwrap_or_default(),
     };
     let embedded = options.embedded_albedo && lobe.is_family();
-    let moments = (!embedded).then_some(Reflectance::Mirror);
-    let exact = exact.filter(|reflectance| refracts || reflectance.indices().is_none());
-    let wants: Vec<Want> = moments.into_iter().chain(exact).map(of).collect();
+    let is_embedded = |reflectance: &Reflectance| embedded && *reflectance == Reflectance::Mirror;
+    let wants: Vec<Want> =
+        reflectances(material).filter(|reflectance| !is_embedded(reflectance)).map(of).collect();
     // The lobe itself too: the albedos of the default set end at the same σ.
     for lobe in std::iter::once(&lobe).chain(wants.iter().map(|want| &want.lobe)) {
         let sigma = lobe.roughness.x().max;
         if lobe.is_family() && sigma > SIGMA_MAX {
-            let why = NotCovered::Sigma { material: material.name.clone(), sigma };
+            let is_mean = !material.lobe.is_family();
+            let why = NotCovered::Sigma { material: material.name.clone(), sigma, is_mean };
             return refusal(material, options, why).map(|why| Err(AlbedoVerdict::NotCovered(why)));
         }
     }
     Ok(if wants.is_empty() { Err(AlbedoVerdict::Embedded) } else { Ok(wants) })
+}
+
+/// The reflectances whose tables a material gets if its albedo is baked: the moments, and its exact
+/// one.
+pub(super) fn reflectances(material: &Material) -> impl Iterator<Item = Reflectance> {
+    // The model has refraction for lobes of the family only.
+    let refracts = matches!(material.lobe.form(), LobeForm::Family | LobeForm::StudentT);
+    let exact = material.fresnel.iter().flat_map(Reflectance::tabulated);
+    let exact =
+        exact.filter(move |of| *of != Reflectance::Mirror && (refracts || of.indices().is_none()));
+    std::iter::once(Reflectance::Mirror).chain(exact)
+}
+
+/// The lobe that a table of a material's albedo is of: with refraction it is a round one.
+pub(super) fn tabulated(lobe: &AlbedoLobe, reflectance: &Reflectance) -> AlbedoLobe {
+    if reflectance.indices().is_some() { lobe.round() } else { lobe.tabulated() }
 }
 
 /// The verdict if no albedo is asked for.

@@ -10,11 +10,13 @@ mod cost;
 mod key;
 mod provenance;
 mod required_shapes;
+mod stand_in;
 
 pub use albedo::{AlbedoVerdict, AlbedoWish, RequiredAlbedo};
 pub(crate) use cost::{AlbedoWork, Known, bare_bytes, growth, normals_work, radial_work};
 pub use cost::{Cost, on_threads, place_seconds, point_seconds};
 pub use required_shapes::RequiredShapes;
+pub use stand_in::StandIn;
 
 use microfacet_sampler::{Ellipsoid, StudentT};
 use microfacet_tables::{Interval, LobeSpec, MaterialEntry, Roughness};
@@ -314,6 +316,8 @@ pub enum NotCovered {
         material: String,
         /// Its σ.
         sigma: f64,
+        /// Whether that is √(σx σy), of the round lobe that stands in for its own.
+        is_mean: bool,
     },
     /// More tables of albedos than are planned.
     Albedos {
@@ -344,9 +348,10 @@ impl NotCovered {
                 "sigma = {sigma:?} along one axis is outside [{low:e}, {high:e}], the roughness that a lobe can have; clamp it, \
                  or write sigma = 0 along both for a mirror"
             ),
-            Self::Sigma { sigma, .. } => format!(
-                "sigma = {sigma} is above {SIGMA_MAX}, the largest roughness that albedo tables cover; lower it, remove its \
-                 `fresnel`, or use --no-albedo"
+            Self::Sigma { sigma, is_mean, .. } => format!(
+                "{} = {sigma} is above {SIGMA_MAX}, the largest roughness that albedo tables cover; lower it, remove its \
+                 `fresnel`, or use --no-albedo",
+                if *is_mean { "sqrt(sigma_x sigma_y)" } else { "sigma" }
             ),
             Self::Albedos { most } => format!(
                 "the materials ask for albedo tables of more than {most} lobes and reflectances; split the scene, or use \

@@ -14,7 +14,9 @@ pub fn material(entry: &MaterialEntry) -> String {
         parts.push(label.clone());
     } else {
         let [x, y] = entry.lobe.sigmas().map(range);
-        parts.push(if x == y { format!("sigma {x}") } else { format!("sigma {x} and {y}") });
+        // Equal ranges along both axes may vary independently.
+        let is_one = entry.lobe.roughness.is_isotropic();
+        parts.push(if is_one { format!("sigma {x}") } else { format!("sigma {x} and {y}") });
         parts.push(format!("gamma {}", range(entry.lobe.gamma)));
     }
     parts.extend(entry.lobe.theta.map(|theta| format!("theta {}", theta.map(number).join(", "))));

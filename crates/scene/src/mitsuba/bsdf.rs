@@ -144,10 +144,13 @@ impl<'a> Reader<'a> {
     }
 
     fn alpha(&mut self, bsdf: &'a Element) -> Result<Roughness> {
-        let [both, u, v] = ["alpha", "alpha_u", "alpha_v"].map(|name| named(bsdf, name).is_some());
-        match (both, u, v) {
-            (_, false, false) => Ok(Roughness::isotropic(self.one_alpha(bsdf, "alpha")?)),
-            (false, true, true) => Ok(Roughness::anisotropic(
+        match ["alpha", "alpha_u", "alpha_v"].map(|name| named(bsdf, name)) {
+            [_, None, None] => Ok(Roughness::isotropic(self.one_alpha(bsdf, "alpha")?)),
+            // One texture for both gives equal values at each point.
+            [None, Some(u), Some(v)] if self.is_same(u, v) => {
+                Ok(Roughness::isotropic(self.one_alpha(bsdf, "alpha_u")?))
+            }
+            [None, Some(_), Some(_)] => Ok(Roughness::anisotropic(
                 self.one_alpha(bsdf, "alpha_u")?,
                 self.one_alpha(bsdf, "alpha_v")?,
             )),

@@ -17,6 +17,9 @@ const TEXTURES: [Row; 5] = [
     ("uniform", "value wavelength_min wavelength_max lambda_min lambda_max"),
 ];
 
+/// Textures with more properties than this are not compared, so that time stays linear.
+const MOST_COMPARED: usize = 32;
+
 /// The property `name`, in the spelling of Mitsuba 3 or of 0.6.
 pub(super) fn named<'a>(element: &'a Element, name: &str) -> Option<&'a Element> {
     let is_older = |child: &&Element| child.attribute("name").is_some_and(|n| newer(n) == name);
@@ -62,6 +65,32 @@ impl<'a> Reader<'a> {
                 ),
             }
         }
+    }
+
+    /// Whether two properties are one texture, or two that say the same in words; textures inside
+    /// textures are not compared.
+    pub(super) fn is_same(&self, a: &'a Element, b: &'a Element) -> bool {
+        let end = |it: &'a Element| match &it.tag[..] {
+            "ref" => self.referred(it).unwrap_or(it),
+            _ => it,
+        };
+        let (a, b) = (end(a), end(b));
+        let is_small = a.children.len() <= MOST_COMPARED;
+        let said = |it: &'a Element| {
+            let named = |(key, _): &&(String, String)| !matches!(&key[..], "name" | "id");
+            it.attributes.iter().filter(named)
+        };
+        let plain = |(a, b): (&Element, &Element)| {
+            (&a.tag, &a.attributes) == (&b.tag, &b.attributes)
+                && a.children.is_empty()
+                && b.children.is_empty()
+        };
+        a == b
+            || a.tag == b.tag
+                && said(a).eq(said(b))
+                && is_small
+                && a.children.len() == b.children.len()
+                && a.children.iter().zip(&b.children).all(plain)
     }
 
     /// A property that is a number, or the range of a texture.

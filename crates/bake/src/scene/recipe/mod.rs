@@ -299,10 +299,17 @@ impl<'a> Entry<'a> {
     }
 
     fn interval(self) -> Result<Interval, SceneError> {
+        let key = self.key;
+        if let Some([min, max]) = self.list_of() {
+            let [min, max] = [min, max].map(Self::written);
+            return self.invalid(format!(
+                "{key} = {} is no number; a range is written {{ min = {min}, max = {max} }}",
+                self.written()
+            ));
+        }
         if self.table().is_none() {
             return Ok(Interval::point(self.number()?));
         }
-        let key = self.key;
         self.only_keys(&RANGE_KEYS)?;
         let (Some(min), Some(max)) = (self.field("min"), self.field("max")) else {
             return self
