@@ -462,10 +462,11 @@ impl BoundedView<'_> {
         let (lobe, v) = (self.lobe, self.v);
         let u = [within(self.from, self.share, u[0]), u[1]];
         let Surface { shape, scales: Scales { sigma, .. } } = lobe.surface();
-        if shape.peeled {
-            return lobe.sample_visible_normal(v, u);
-        }
-        let m = draw::<_, false>(shape, &self.view, u, sigma, |m| m);
+        let m = if shape.peeled {
+            draw::<_, true>(shape, &self.view, u, sigma, |m| m)
+        } else {
+            draw::<_, false>(shape, &self.view, u, sigma, |m| m)
+        };
         let general = || sample_general::<&Slices>(shape, sigma, v.x, v.y, v.z, u);
         m.map_or_else(general, first_three).to_array()
     }

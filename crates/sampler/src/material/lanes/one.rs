@@ -35,39 +35,35 @@ impl<S: Shape> Surface<S> {
     /// A visible normal, by the fast path where it serves and by the general path elsewhere.
     #[inline(always)]
     pub(crate) fn sample(self, v: Vec3, u: [f32; 2]) -> Vec3 {
-        // Scalar arguments keep the common case in registers next to the calls of the other cases.
-        let (seed, sigma) = (self.shape.seed(), self.scales.sigma);
         if self.shape.peeled() {
-            return sample_heavy::<S>(seed, sigma, [v.x, v.y, v.z], u);
+            return self.sample_heavy(v, u);
         }
-        let m = draw::<S, false>(self.shape, &self.view::<false>(v), u, sigma, |m| m);
-        m.map_or_else(|| sample_general::<S>(seed, sigma, v.x, v.y, v.z, u), first_three)
+        let m = draw::<S, false>(self.shape, &self.view::<false>(v), u, self.scales.sigma, |m| m);
+        m.map_or_else(|| self.general(v, u), first_three)
     }
 
     /// A visible normal of any length, where that is faster; its squares are in range.
     #[inline(always)]
     pub(crate) fn sample_along(self, v: Vec3, u: [f32; 2]) -> Vec3 {
-        let (seed, sigma) = (self.shape.seed(), self.scales.sigma);
         if self.shape.peeled() {
-            return sample_heavy::<S>(seed, sigma, [v.x, v.y, v.z], u);
+            return self.sample_heavy(v, u);
         }
-        let m = draw_along::<S, false>(self.shape, &self.view::<false>(v), u, sigma);
-        m.map_or_else(
-            || sample_general::<S>(seed, sigma, v.x, v.y, v.z, u),
-            |(m, _)| first_three(m),
-        )
+        let m = draw_along::<S, false>(self.shape, &self.view::<false>(v), u, self.scales.sigma);
+        m.map_or_else(|| self.general(v, u), |(m, _)| first_three(m))
     }
-}
 
-/// [`Surface::sample`] of a shape with a heavy part, out of line so that calls of other shapes stay
-/// short.
-#[inline(always)]
-fn sample_heavy<S: Shape>(seed: S::Seed, sigma: [f32; 2], v: [f32; 3], u: [f32; 2]) -> Vec3 {
-    let surface = Surface::new(S::of_seed(seed), sigma);
-    let [x, y, z] = v;
-    let view = surface.view::<true>(Vec3::new(x, y, z));
-    let m = draw::<S, true>(surface.shape, &view, u, sigma, |m| m);
-    m.map_or_else(|| sample_general::<S>(seed, sigma, x, y, z, u), first_three)
+    /// [`sample`](Self::sample) of a shape with a heavy part.
+    #[inline(always)]
+    fn sample_heavy(self, v: Vec3, u: [f32; 2]) -> Vec3 {
+        let m = draw::<S, true>(self.shape, &self.view::<true>(v), u, self.scales.sigma, |m| m);
+        m.map_or_else(|| self.general(v, u), first_three)
+    }
+
+    /// The general path, by scalar arguments, which keep the common case in registers.
+    #[inline(always)]
+    fn general(self, v: Vec3, u: [f32; 2]) -> Vec3 {
+        sample_general::<S>(self.shape.seed(), self.scales.sigma, v.x, v.y, v.z, u)
+    }
 }
 
 /// The normal visible along a view: drawn in unit space, stretched by `sigma`, then transformed
