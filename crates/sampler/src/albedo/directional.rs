@@ -7,7 +7,7 @@ use microfacet_tables::{Reflectance, Table};
 
 use super::curve::{Curve, MaterialPoint, Rows, missing};
 use super::elevation::Elevation;
-use super::moments::{Moments, below, less_mirror};
+use super::moments::{Moments, down_to_grazing, less_mirror};
 use crate::error::MaterialError;
 use crate::vector::vec3;
 
@@ -135,11 +135,6 @@ impl Albedo {
             let [e, bias, f82, _] = self.curve.at(rows, view, cos);
             [e, bias, f82]
         };
-        let (floor, here) = (view.floor() as f32, channels(cos));
-        // A mirror has E = 1 down to grazing.
-        if cos >= floor || here[0] == 0.0 {
-            return here;
-        }
-        below(self.masking, floor, cos, here, channels(4.0 * floor))
+        down_to_grazing(self.masking, view.floor() as f32, cos, channels)
     }
 }

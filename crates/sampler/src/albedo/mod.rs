@@ -11,13 +11,16 @@ mod average;
 mod curve;
 mod directional;
 mod elevation;
+mod family;
 mod find;
 mod moments;
 mod reflectance_average;
-pub(crate) mod shape;
+mod shape;
 
 pub use crate::error::Covered;
 pub use curve::{DielectricAlbedo, FresnelAlbedo, ViewCurve};
 pub use directional::Albedo;
+pub use family::{AlbedoAt, FamilyAlbedo};
 pub use moments::Moments;
 pub use reflectance_average::{f82_tint_average, fresnel_average, schlick_average};
+pub use shape::{ShapeAlbedo, ShapeAlbedoAt};

@@ -1,0 +1,93 @@
+//! Fills the volume from a table of moments, and integrates it over views.
+
+use alloc::vec::Vec;
+
+use microfacet_core::gauss_legendre;
+use microfacet_core::math::sqrt64;
+use microfacet_tables::{Mapping, Table};
+
+use super::axes::{Roughnesses, Shapes, View};
+use super::spline::{cubic, quadratic};
+use super::{FamilyAlbedo, LEAST, VIEWS};
+use crate::albedo::moments::{Moments, less_mirror};
+use crate::albedo::shape::ShapeAlbedo;
+
+impl FamilyAlbedo {
+    /// `None` for a table that is not of moments over γ, σ and the view.
+    pub(in crate::albedo) fn of(table: &Table) -> Option<Self> {
+        let lobe = &table.subject.lobe;
+        let gammas: [f64; 2] = lobe.gamma.into();
+        let roughness = table.axes.get(1)?;
+        let Mapping::LogRoughness(mapping) = roughness.mapping else { return None };
+        let first = mapping.quantity(roughness.nodes[0]);
+        let range = lobe.roughness.x();
+        let ends = [range.min.max(first) as f32, range.max as f32];
+        let mut family = Self {
+            masking: table.subject.masking?,
+            shapes: Shapes::new(gammas),
+            sigmas: Roughnesses::new(ends, range.min <= 0.0),
+            values: Vec::new(),
+            averages: Vec::new(),
+        };
+        let gamma = |q: f32| (1.5 + 0.5 / f64::from(q)).clamp(gammas[0], gammas[1]);
+        let shapes = family.shapes.quantities();
+        let [sigmas, averages] = family.sigmas.quantities();
+
+        let mut all = Vec::new();
+        for &q in &shapes {
+            let shape = ShapeAlbedo::of(table, gamma(q))?;
+            let rows = sigmas.iter().flat_map(|&sigma| row(&shape, sigma, q));
+            all.extend(quadratic(rows.collect(), 3 * VIEWS));
+        }
+        let width = all.len() / shapes.len();
+        let all = quadratic(all, width);
+        let channel = |i: usize| all.iter().skip(i).step_by(3).map(|&x| x as f32);
+        family.values = (0..3).flat_map(channel).collect();
+
+        let mut all = Vec::new();
+        for &q in &shapes {
+            let nodes = averages.iter().flat_map(|&sigma| family.integrated(sigma, q));
+            all.extend(quadratic(nodes.collect(), 3));
+        }
+        let width = all.len() / shapes.len();
+        let all = quadratic(all, width);
+        let nodes = all.chunks_exact(3).map(|node| [node[0], node[1], node[2], 0.0]);
+        family.averages = nodes.map(|node| node.map(|x| x as f32)).collect();
+        Some(family)
+    }
+
+    /// The averages over views of the lookups at σ and q: log₂(1 − E_avg) and the other channels.
+    fn integrated(&self, sigma: f32, q: f32) -> [f64; 3] {
+        const RULE: [(f64, f64); 3] = gauss_legendre();
+        let place = self.place(sigma, q);
+        let mut sum = [0.0; 3];
+        for ends in place.view.nodes().windows(2) {
+            let width = ends[1] - ends[0];
+            for (x, weight) in RULE {
+                let root = ends[0] + x * width;
+                let [cos, sin] = View::direction(root);
+                // 2μ dμ of h = root⁴: dμ/dh = 2 (1−h²)/(1+h²)².
+                let cube = root * root * root;
+                let share = 8.0 * cos * cube * sin * (1.0 + sin) * width * weight;
+                let (mirror, rest) = (Moments::mirror(cos as f32), place.rest(cos as f32));
+                let whole = mirror.plus(rest);
+                let less = [rest[0], whole.bias - mirror.bias, whole.f82 - mirror.f82];
+                for (sum, x) in sum.iter_mut().zip(less) {
+                    *sum += share * f64::from(x);
+                }
+            }
+        }
+        let [e, bias, f82] = less_mirror(sum);
+        [libm::log2(f64::from(-e).max(libm::exp2(f64::from(LEAST) - 1.0))), bias.into(), f82.into()]
+    }
+}
+
+/// The coefficients along the view at one roughness, three channels for each.
+fn row(shape: &ShapeAlbedo<'_>, sigma: f32, q: f32) -> Vec<f64> {
+    let at = shape.at(sigma);
+    let value = |root: f64| {
+        let [e, bias, f82] = at.rest(View::direction(root)[0] as f32).map(f64::from);
+        [sqrt64(-e), bias, f82]
+    };
+    cubic(View::new(sigma, q).nodes().map(value).as_flattened(), 3)
+}

@@ -1,0 +1,234 @@
+//! The directional albedo at any shape and roughness, for textures of σ and γ: a volume over
+//! (γ, σ, view), made once from a table of moments, in which a lookup costs little more than one in
+//! a texture.
+//!
+//! `axes` has the coordinates, `spline` the polynomials between nodes, and `build` fills the volume.
+
+mod axes;
+mod build;
+mod octaves;
+mod spline;
+
+use alloc::vec::Vec;
+
+use microfacet_core::Masking;
+use microfacet_core::math::unit;
+use wide::f32x4;
+
+use self::axes::{Roughnesses, Shapes, View};
+use self::spline::{FOUR, THREE};
+use super::moments::Moments;
+use crate::elementary::exp2;
+use crate::vector::vec3;
+
+/// Coefficients along the view.
+const VIEWS: usize = View::CELLS + 3;
+/// What a lookup reads of one shape: from the first of four coefficients of the first of three
+/// roughnesses to the last of the last.
+const PART: usize = 2 * VIEWS + FOUR;
+
+/// The directional albedo of the family under one form of masking, to be read at any σ and γ: for
+/// renderers that take them from textures.
+///
+/// Made by [`Tables::family_albedo`](crate::Tables::family_albedo).
+///
+/// ```
+/// # #[cfg(feature = "embedded")] {
+/// use microfacet_sampler::{Masking, Tables};
+///
+/// let family = Tables::embedded().family_albedo(Masking::HeightCorrelated)?; // once
+/// let albedo = family.at(0.8, 3.0); // at every hit
+/// let v = [0.6, 0.0, 0.8];
+/// let gold = albedo.moments(v).schlick(0.77, 1.0); // green: F0, F90
+/// let factor = albedo.turquin(v, 0.77);
+/// assert!(albedo.albedo(v) < 1.0 && gold < albedo.albedo(v) && factor > 1.0);
+/// # }
+/// # Ok::<(), microfacet_sampler::MaterialError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct FamilyAlbedo {
+    masking: Masking,
+    shapes: Shapes,
+    sigmas: Roughnesses,
+    /// Coefficients of the square root of 1 − E, which keeps small losses apart, then of the excess of bias, then of F82: by γ, by σ, by view.
+    values: Vec<f32>,
+    /// Coefficients of log₂(1 − E_avg) and of the averages of the other two: by γ, by σ.
+    averages: Vec<[f32; 4]>,
+}
+
+impl FamilyAlbedo {
+    /// The albedo at a roughness σ and a shape γ, of those that the set covers.
+    ///
+    /// Both are clamped to the ranges that the set's table covers, in the default set σ to
+    /// [1e-8, 3] and γ to [1.501, ∞], which is Beckmann; NaN counts as the smallest. σ ≤ 0 is a
+    /// mirror, with E = 1, where the set covers σ = 0.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, sigma: f32, gamma: f32) -> AlbedoAt<'_> {
+        let (q, sigma) = (self.shapes.clamped(gamma), self.sigmas.clamped(sigma));
+        self.place(sigma, q)
+    }
+
+    #[inline(always)]
+    fn place(&self, sigma: f32, q: f32) -> AlbedoAt<'_> {
+        let (shape, by_shape) = self.shapes.weights(q);
+        let (row, by_sigma) = self.sigmas.weights(sigma);
+        let view = View::new(sigma, q);
+        AlbedoAt { family: self, shape, row, by_shape, by_sigma, sigma, view }
+    }
+
+    /// The form of masking.
+    #[must_use]
+    pub fn masking(&self) -> Masking {
+        self.masking
+    }
+
+    /// The memory that it takes, in bytes.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        size_of::<Self>() + size_of_val(&self.values[..]) + size_of_val(&self.averages[..])
+    }
+
+    /// Rows of one shape.
+    #[inline(always)]
+    fn rows(&self) -> usize {
+        self.sigmas.nodes.count + 2
+    }
+
+    fn averages_of_shape(&self) -> usize {
+        self.sigmas.averages.count + 2
+    }
+}
+
+/// The directional albedo at one σ and γ, read from a [`FamilyAlbedo`]; as small as some numbers.
+///
+/// Its methods are those of [`Albedo`](crate::albedo::Albedo), for which it stands in. `v` is a
+/// unit vector in the tangent frame, n = +z; a view at or below the horizon, or with NaN in `v.z`,
+/// is the grazing view.
+#[derive(Clone, Copy, Debug)]
+pub struct AlbedoAt<'a> {
+    family: &'a FamilyAlbedo,
+    /// The first of three shapes and of three roughnesses, and their weights.
+    shape: u32,
+    row: u32,
+    by_shape: [f32; THREE],
+    by_sigma: [f32; THREE],
+    sigma: f32,
+    view: View,
+}
+
+impl AlbedoAt<'_> {
+    /// The form of masking.
+    #[must_use]
+    pub fn masking(&self) -> Masking {
+        self.family.masking
+    }
+
+    /// The directional albedo E(v) with F = 1, in [0, 1].
+    #[inline]
+    #[must_use]
+    pub fn albedo(&self, v: impl Into<[f32; 3]>) -> f32 {
+        1.0 - self.lost(v)
+    }
+
+    /// The share of light lost, 1 − E(v).
+    #[inline]
+    #[must_use]
+    pub fn lost(&self, v: impl Into<[f32; 3]>) -> f32 {
+        self.lost_at(self.along(unit(vec3(v).z)))
+    }
+
+    /// Moments of the Fresnel weights at a view, each in [0, 1], with a total of at most 1.
+    #[inline]
+    #[must_use]
+    pub fn moments(&self, v: impl Into<[f32; 3]>) -> Moments {
+        let cos = unit(vec3(v).z);
+        Moments::mirror(cos).plus(self.rest(cos))
+    }
+
+    /// The average albedo E_avg = 1/π ∫∫ E μ dμ dφ with F = 1.
+    #[must_use]
+    pub fn albedo_average(&self) -> f32 {
+        1.0 - self.lost_average()
+    }
+
+    /// The average share of light lost, 1 − E_avg, with all its digits.
+    ///
+    /// It is that of these lookups: their integral differs from it by no more than 3e-3 of itself.
+    #[must_use]
+    pub fn lost_average(&self) -> f32 {
+        0.0 - self.average()[0]
+    }
+
+    /// Cosine-weighted averages of the moments over the hemisphere of views: 1/π ∫∫ · μ dμ dφ.
+    #[must_use]
+    pub fn average_moments(&self) -> Moments {
+        Moments::mirror_average().plus(self.average())
+    }
+
+    /// E − 1 in [−1, 0], and the excess of the other moments over E times a mirror's.
+    #[inline(always)]
+    fn rest(&self, cos: f32) -> [f32; 3] {
+        if self.sigma == 0.0 {
+            return [0.0; 3];
+        }
+        let along = self.along(cos);
+        let [bias, f82] = [1, 2].map(|channel| self.channel(channel, along));
+        [0.0 - self.lost_at(along), bias, f82]
+    }
+
+    /// The cell of a view, and the weights of its four coefficients.
+    #[inline(always)]
+    fn along(&self, cos: f32) -> (u32, f32x4) {
+        let (cell, weights) = self.view.weights(cos);
+        (cell, f32x4::from(weights))
+    }
+
+    #[inline(always)]
+    fn lost_at(&self, along: (u32, f32x4)) -> f32 {
+        let root = self.channel(0, along);
+        let lost = root * root;
+        if self.sigma == 0.0 { 0.0 } else if lost < 1.0 { lost } else { 1.0 }
+    }
+
+    /// The square root of 1 − E, or the excess of another moment.
+    #[inline(always)]
+    fn channel(&self, channel: usize, (cell, along): (u32, f32x4)) -> f32 {
+        let (family, rows) = (self.family, self.family.rows());
+        let [a, b, c] = self.by_sigma;
+        let mut sum = f32x4::ZERO;
+        for (i, weight) in self.by_shape.into_iter().enumerate() {
+            let shape = channel * (family.shapes.nodes.count + 2) + self.shape as usize + i;
+            let first = (shape * rows + self.row as usize) * VIEWS + cell as usize;
+            let part: &[f32; PART] = family.values[first..].first_chunk().expect("in the volume");
+            let four = |j: usize| -> f32x4 {
+                let four: &[f32; FOUR] = part[j * VIEWS..].first_chunk().expect("in the part");
+                f32x4::from(*four)
+            };
+            sum += (four(0) * a + four(1) * b + four(2) * c) * weight;
+        }
+        let [a, b, c, d] = (sum * along).to_array();
+        (a + b) + (c + d)
+    }
+
+    /// The averages, as the channels of tables.
+    fn average(&self) -> [f32; 3] {
+        if self.sigma == 0.0 {
+            return [0.0; 3];
+        }
+        let (row, weights) = self.family.sigmas.average_weights(self.sigma);
+        let rows = self.family.averages_of_shape();
+        let mut sum = f32x4::ZERO;
+        for (i, a) in self.by_shape.iter().enumerate() {
+            let first = (self.shape as usize + i) * rows + row as usize;
+            for (node, b) in self.family.averages[first..first + THREE].iter().zip(weights) {
+                sum += f32x4::from(*node) * (a * b);
+            }
+        }
+        let [log, bias, f82, _] = sum.to_array();
+        [0.0 - unit(exp2(sum).to_array()[0]), bias, f82].map(|x| if log < LEAST { 0.0 } else { x })
+    }
+}
+
+/// The logarithm of a loss that counts as none.
+const LEAST: f32 = -120.0;
