@@ -6,7 +6,7 @@ use microfacet_core::gauss_legendre;
 use microfacet_core::math::sqrt64;
 use microfacet_tables::{Mapping, Table};
 
-use super::axes::{Roughnesses, Shapes, View};
+use super::axes::{Axes, View};
 use super::spline::{cubic, quadratic};
 use super::{FamilyAlbedo, LEAST, VIEWS};
 use crate::albedo::moments::{Moments, less_mirror};
@@ -24,14 +24,12 @@ impl FamilyAlbedo {
         let ends = [range.min.max(first) as f32, range.max as f32];
         let mut family = Self {
             masking: table.subject.masking?,
-            shapes: Shapes::new(gammas),
-            sigmas: Roughnesses::new(ends, range.min <= 0.0),
+            axes: Axes::new(gammas, ends, range.min <= 0.0),
             values: Vec::new(),
             averages: Vec::new(),
         };
         let gamma = |q: f32| (1.5 + 0.5 / f64::from(q)).clamp(gammas[0], gammas[1]);
-        let shapes = family.shapes.quantities();
-        let [sigmas, averages] = family.sigmas.quantities();
+        let [shapes, sigmas, averages] = family.axes.nodes();
 
         let mut all = Vec::new();
         for &q in &shapes {
@@ -85,9 +83,23 @@ impl FamilyAlbedo {
 /// The coefficients along the view at one roughness, three channels for each.
 fn row(shape: &ShapeAlbedo<'_>, sigma: f32, q: f32) -> Vec<f64> {
     let at = shape.at(sigma);
-    let value = |root: f64| {
+    let mut nodes = View::new(sigma, q).nodes().map(|root| {
         let [e, bias, f82] = at.rest(View::direction(root)[0] as f32).map(f64::from);
         [sqrt64(-e), bias, f82]
-    };
-    cubic(View::new(sigma, q).nodes().map(value).as_flattened(), 3)
+    });
+    // The cubic through the next four, not the limit at the horizon, which is reached with a power
+    // that no spline follows: views of cos θ > 1e-4 gain by it.
+    nodes[0] = core::array::from_fn(|i| {
+        4.0 * (nodes[1][i] + nodes[3][i]) - 6.0 * nodes[2][i] - nodes[4][i]
+    });
+    let mut row = cubic(nodes.as_flattened(), 3);
+    // Where next to nothing is lost, the waves beside a steeper part would be more than it.
+    for (i, near) in nodes.windows(3).enumerate() {
+        let [a, b, c] = [near[0][0], near[1][0], near[2][0]];
+        let [least, most] = [a.min(b).min(c), a.max(b).max(c)];
+        if most < 0.03 {
+            row[3 * (i + 2)] = row[3 * (i + 2)].clamp(least, most);
+        }
+    }
+    row
 }

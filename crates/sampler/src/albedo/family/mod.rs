@@ -15,7 +15,7 @@ use microfacet_core::Masking;
 use microfacet_core::math::unit;
 use wide::f32x4;
 
-use self::axes::{Roughnesses, Shapes, View};
+use self::axes::{AVERAGE, Axes, Place, SHAPE, SIGMA, View};
 use self::spline::{FOUR, THREE};
 use super::moments::Moments;
 use crate::elementary::exp2;
@@ -48,8 +48,7 @@ const PART: usize = 2 * VIEWS + FOUR;
 #[derive(Clone, Debug)]
 pub struct FamilyAlbedo {
     masking: Masking,
-    shapes: Shapes,
-    sigmas: Roughnesses,
+    axes: Axes,
     /// Coefficients of the square root of 1 − E, which keeps small losses apart, then of the excess of bias, then of F82: by γ, by σ, by view.
     values: Vec<f32>,
     /// Coefficients of log₂(1 − E_avg) and of the averages of the other two: by γ, by σ.
@@ -65,16 +64,14 @@ impl FamilyAlbedo {
     #[inline]
     #[must_use]
     pub fn at(&self, sigma: f32, gamma: f32) -> AlbedoAt<'_> {
-        let (q, sigma) = (self.shapes.clamped(gamma), self.sigmas.clamped(sigma));
+        let (sigma, q) = self.axes.clamped(sigma, gamma);
         self.place(sigma, q)
     }
 
     #[inline(always)]
     fn place(&self, sigma: f32, q: f32) -> AlbedoAt<'_> {
-        let (shape, by_shape) = self.shapes.weights(q);
-        let (row, by_sigma) = self.sigmas.weights(sigma);
-        let view = View::new(sigma, q);
-        AlbedoAt { family: self, shape, row, by_shape, by_sigma, sigma, view }
+        let place = self.axes.place(sigma, q);
+        AlbedoAt { family: self, place, view: View::new(sigma, q), mirror: sigma == 0.0 }
     }
 
     /// The form of masking.
@@ -89,14 +86,10 @@ impl FamilyAlbedo {
         size_of::<Self>() + size_of_val(&self.values[..]) + size_of_val(&self.averages[..])
     }
 
-    /// Rows of one shape.
+    /// Coefficients along an axis.
     #[inline(always)]
-    fn rows(&self) -> usize {
-        self.sigmas.nodes.count + 2
-    }
-
-    fn averages_of_shape(&self) -> usize {
-        self.sigmas.averages.count + 2
+    fn along(&self, axis: usize) -> usize {
+        self.axes.counts[axis] + 2
     }
 }
 
@@ -108,12 +101,8 @@ impl FamilyAlbedo {
 #[derive(Clone, Copy, Debug)]
 pub struct AlbedoAt<'a> {
     family: &'a FamilyAlbedo,
-    /// The first of three shapes and of three roughnesses, and their weights.
-    shape: u32,
-    row: u32,
-    by_shape: [f32; THREE],
-    by_sigma: [f32; THREE],
-    sigma: f32,
+    place: Place,
+    mirror: bool,
     view: View,
 }
 
@@ -169,7 +158,7 @@ impl AlbedoAt<'_> {
     /// E − 1 in [−1, 0], and the excess of the other moments over E times a mirror's.
     #[inline(always)]
     fn rest(&self, cos: f32) -> [f32; 3] {
-        if self.sigma == 0.0 {
+        if self.mirror {
             return [0.0; 3];
         }
         let along = self.along(cos);
@@ -179,27 +168,28 @@ impl AlbedoAt<'_> {
 
     /// The cell of a view, and the weights of its four coefficients.
     #[inline(always)]
-    fn along(&self, cos: f32) -> (u32, f32x4) {
-        let (cell, weights) = self.view.weights(cos);
-        (cell, f32x4::from(weights))
+    fn along(&self, cos: f32) -> (usize, f32x4) {
+        self.view.weights(cos)
     }
 
     #[inline(always)]
-    fn lost_at(&self, along: (u32, f32x4)) -> f32 {
+    fn lost_at(&self, along: (usize, f32x4)) -> f32 {
         let root = self.channel(0, along);
         let lost = root * root;
-        if self.sigma == 0.0 { 0.0 } else if lost < 1.0 { lost } else { 1.0 }
+        if self.mirror { 0.0 } else if lost < 1.0 { lost } else { 1.0 }
     }
 
     /// The square root of 1 − E, or the excess of another moment.
     #[inline(always)]
-    fn channel(&self, channel: usize, (cell, along): (u32, f32x4)) -> f32 {
-        let (family, rows) = (self.family, self.family.rows());
-        let [a, b, c] = self.by_sigma;
+    fn channel(&self, channel: usize, (cell, along): (usize, f32x4)) -> f32 {
+        let (family, (first, weights)) = (self.family, &self.place);
+        let (shapes, rows) = (family.along(SHAPE), family.along(SIGMA));
+        let [a, b, c] = weights.map(|weight| weight.to_array()[SIGMA]);
         let mut sum = f32x4::ZERO;
-        for (i, weight) in self.by_shape.into_iter().enumerate() {
-            let shape = channel * (family.shapes.nodes.count + 2) + self.shape as usize + i;
-            let first = (shape * rows + self.row as usize) * VIEWS + cell as usize;
+        for (i, weight) in weights.iter().enumerate() {
+            let weight = weight.to_array()[SHAPE];
+            let shape = channel * shapes + first[SHAPE] + i;
+            let first = (shape * rows + first[SIGMA]) * VIEWS + cell;
             let part: &[f32; PART] = family.values[first..].first_chunk().expect("in the volume");
             let four = |j: usize| -> f32x4 {
                 let four: &[f32; FOUR] = part[j * VIEWS..].first_chunk().expect("in the part");
@@ -213,16 +203,16 @@ impl AlbedoAt<'_> {
 
     /// The averages, as the channels of tables.
     fn average(&self) -> [f32; 3] {
-        if self.sigma == 0.0 {
+        if self.mirror {
             return [0.0; 3];
         }
-        let (row, weights) = self.family.sigmas.average_weights(self.sigma);
-        let rows = self.family.averages_of_shape();
+        let (first, weights) = &self.place;
         let mut sum = f32x4::ZERO;
-        for (i, a) in self.by_shape.iter().enumerate() {
-            let first = (self.shape as usize + i) * rows + row as usize;
+        for (i, a) in weights.iter().enumerate() {
+            let a = a.to_array()[SHAPE];
+            let first = (first[SHAPE] + i) * self.family.along(AVERAGE) + first[AVERAGE];
             for (node, b) in self.family.averages[first..first + THREE].iter().zip(weights) {
-                sum += f32x4::from(*node) * (a * b);
+                sum += f32x4::from(*node) * (a * b.to_array()[AVERAGE]);
             }
         }
         let [log, bias, f82, _] = sum.to_array();

@@ -5,36 +5,46 @@
 
 use alloc::vec::Vec;
 
+use wide::{bytemuck, f32x4, i32x4};
+
 /// How many coefficients a quadratic takes.
 pub(super) const THREE: usize = 3;
 /// How many coefficients a cubic takes.
 pub(super) const FOUR: usize = 4;
 
-/// The nearest whole number to a small x ≥ −½, and how far x is above it.
+/// The nearest whole numbers to small x ≥ −½, and how far the x are above them.
 #[inline(always)]
-fn nearest(x: f32) -> (u32, f32) {
+fn nearest(x: f32x4) -> (i32x4, f32x4) {
     // A sum with this is rounded to a whole number, which stands in its last bits.
     const SHIFT: f32 = 12_582_912.0;
     let shifted = x + SHIFT;
-    (shifted.to_bits() & 0xffff, x - (shifted - SHIFT))
+    let bits: i32x4 = bytemuck::cast(shifted);
+    (bits & i32x4::splat(0xffff), x - (shifted - SHIFT))
 }
 
-/// The first of the three coefficients at x ∈ [0, nodes − 1], and their weights.
+/// The first of the three coefficients at x ∈ [0, nodes − 1], and their weights; along four axes.
 #[inline(always)]
-pub(super) fn quadratic_weights(x: f32) -> (u32, [f32; THREE]) {
+pub(super) fn quadratic_weights(x: f32x4) -> ([usize; FOUR], [f32x4; THREE]) {
     let (start, d) = nearest(x);
-    let (below, above) = (0.5 - d, 0.5 + d);
-    (start, [0.5 * below * below, 0.75 - d * d, 0.5 * above * above])
+    let (below, above, half) = (d - 0.5, d + 0.5, f32x4::splat(0.5));
+    let weights = [half * below * below, f32x4::splat(0.75) - d * d, half * above * above];
+    (start.to_array().map(|i| i as usize), weights)
 }
 
 /// The cell of x ∈ [0, cells), which is also the first of its four coefficients, and their weights.
 #[inline(always)]
-pub(super) fn cubic_weights(x: f32) -> (u32, [f32; FOUR]) {
-    let (cell, d) = nearest(x - 0.5);
-    let (x, y) = (0.5 + d, 0.5 - d);
-    let (xx, yy) = (x * x, y * y);
-    let middle = |square: f32, x: f32| 2.0 / 3.0 + square * (0.5 * x - 1.0);
-    (cell, [yy * y * (1.0 / 6.0), middle(xx, x), middle(yy, y), xx * x * (1.0 / 6.0)])
+pub(super) fn cubic_weights(x: f32) -> (usize, f32x4) {
+    // Powers of the share x of the cell: (1−x)³/6, …, x³/6.
+    const SIXTH: f32 = 1.0 / 6.0;
+    const POWERS: [[f32; FOUR]; FOUR] = [
+        [SIXTH, 4.0 * SIXTH, SIXTH, 0.0],
+        [-0.5, 0.0, 0.5, 0.0],
+        [0.5, -1.0, 0.5, 0.0],
+        [-SIXTH, 0.5, -0.5, SIXTH],
+    ];
+    let (cell, d) = nearest(f32x4::splat(x - 0.5));
+    let (x, [a, b, c, d]) = (d + 0.5, POWERS.map(f32x4::from));
+    (cell.to_array()[0] as usize, a + x * (b + x * (c + x * d)))
 }
 
 /// The coefficients of the quadratic spline through rows of `width` values: two rows more than
@@ -130,6 +140,11 @@ mod tests {
         (0..n).flat_map(|i| [of(i as f64), 1.0 - of(i as f64)]).collect()
     }
 
+    fn one(x: f32) -> (usize, [f32; THREE]) {
+        let (start, weights) = quadratic_weights(f32x4::splat(x));
+        (start[1], weights.map(|weight| weight.to_array()[1]))
+    }
+
     #[test]
     fn parabolas_and_cubics_are_met() {
         let (parabola, cube) = (|x: f64| 0.3 + x * (0.2 - 0.1 * x), |x: f64| x * (x - 3.0) * x);
@@ -138,8 +153,8 @@ mod tests {
             assert_eq!(all.len(), 2 * (n + 2));
             for i in 0..=20 {
                 let x = (n - 1) as f64 * f64::from(i) / 20.0;
-                let (start, weights) = quadratic_weights(x as f32);
-                let at = |j: usize| all[2 * (start as usize + j)];
+                let (start, weights) = one(x as f32);
+                let at = |j: usize| all[2 * (start + j)];
                 let got: f64 = (0..3).map(|j| f64::from(weights[j]) * at(j)).sum();
                 assert!((got - parabola(x)).abs() < 3e-6, "{n} {x}: {got}");
             }
@@ -150,7 +165,8 @@ mod tests {
             for i in 0..=20 {
                 let x = (n - 1) as f64 * f64::from(i) / 20.0;
                 let (cell, weights) = cubic_weights((x as f32).min(n as f32 - 1.000_001));
-                let at = |j: usize| all[2 * (cell as usize + j)];
+                let weights = weights.to_array();
+                let at = |j: usize| all[2 * (cell + j)];
                 let got: f64 = (0..4).map(|j| f64::from(weights[j]) * at(j)).sum();
                 assert!((got - cube(x)).abs() < 1e-6 * cube(11.0), "{n} {x}: {got}");
             }
@@ -162,8 +178,8 @@ mod tests {
         let steep = |x: f64| 1.0 / (0.2 + x);
         let all = quadratic(rows(7, steep), 2);
         for i in 0..7 {
-            let (start, weights) = quadratic_weights(i as f32);
-            let at = |j: usize| all[2 * (start as usize + j)];
+            let (start, weights) = one(i as f32);
+            let at = |j: usize| all[2 * (start + j)];
             let got: f64 = (0..3).map(|j| f64::from(weights[j]) * at(j)).sum();
             assert!((got - steep(i as f64)).abs() < 1e-6);
         }
