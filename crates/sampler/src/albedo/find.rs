@@ -75,8 +75,7 @@ impl Tables {
             return Err(MaterialError::Gamma(gamma));
         }
         let tables = |masking| self.moments(Kind::Albedo, masking);
-        let mut of_shape =
-            tables(masking).filter(|table| table.subject.lobe.contains_shape(gamma));
+        let mut of_shape = tables(masking).filter(|table| table.subject.lobe.contains_shape(gamma));
         of_shape
             .find_map(|table| ShapeAlbedo::of(table, gamma))
             .ok_or_else(|| not_covered(tables, masking, [f64::NAN, gamma]))
@@ -97,9 +96,7 @@ impl Tables {
         };
         // The first among equals.
         let widest = tables(masking).reduce(|a, b| if width(b) > width(a) { b } else { a });
-        widest
-            .and_then(FamilyAlbedo::of)
-            .ok_or_else(|| not_covered(tables, masking, [f64::NAN; 2]))
+        widest.and_then(FamilyAlbedo::of).ok_or_else(|| not_covered(tables, masking, [f64::NAN; 2]))
     }
 
     /// The albedo with F = 1 of a named material, and its moments, for the form of masking of its

@@ -3,11 +3,14 @@
 //!
 //! Every lobe and reflectance goes the same way: `find` chooses the table by its description,
 //! `curve` collapses the axes of the material, which leaves a curve over the view, and
-//! `directional` makes moments of its channels.
+//! `directional` makes moments of its channels. `shape` collapses the axis of γ alone, and `family`
+//! none: they are for renderers that take σ, or both, from textures. `common` is what the three
+//! forms have in common.
 //!
 //! The averages of reflectances over the hemisphere are for a compensation of your own.
 
 mod average;
+mod common;
 mod curve;
 mod directional;
 mod elevation;
@@ -18,6 +21,7 @@ mod reflectance_average;
 mod shape;
 
 pub use crate::error::Covered;
+pub use common::DirectionalAlbedo;
 pub use curve::{DielectricAlbedo, FresnelAlbedo, ViewCurve};
 pub use directional::Albedo;
 pub use family::{AlbedoAt, FamilyAlbedo};

@@ -4,11 +4,13 @@ use alloc::vec::Vec;
 
 use microfacet_core::Masking;
 use microfacet_core::math::unit;
-use microfacet_tables::axis::lagrange::{SIX, combine, six, weights};
+use microfacet_tables::axis::lagrange::{SIX, six, weights};
 use microfacet_tables::axis::{LogRoughness, PreparedView, ViewBlend};
 use microfacet_tables::{Axis, Interpolation, Kind, Mapping, Table};
 
-use super::moments::{Moments, down_to_grazing};
+use super::average::over_views;
+use super::elevation::Elevation;
+use super::moments::{Moments, averaged, down_to_grazing, less_mirror};
 use crate::tables::Tables;
 use crate::vector::vec3;
 
@@ -145,7 +147,37 @@ impl ShapeAlbedoAt<'_> {
     /// The share of light lost, 1 − E(v), with all its digits where E is close to 1.
     #[must_use]
     pub fn lost(&self, v: impl Into<[f32; 3]>) -> f32 {
-        0.0 - self.rest(unit(vec3(v).z))[0]
+        let cos = unit(vec3(v).z);
+        let [e] = if cos >= self.view.floor() as f32 {
+            self.interpolate(cos)
+        } else {
+            [self.rest(cos)[0]]
+        };
+        0.0 - e
+    }
+
+    /// The average share of light lost, 1 − E_avg, by quadrature: it takes some microseconds.
+    #[must_use]
+    pub fn lost_average(&self) -> f32 {
+        0.0 - self.average()[0]
+    }
+
+    /// The average albedo E_avg = 1/π ∫∫ E μ dμ dφ with F = 1, by quadrature.
+    #[must_use]
+    pub fn albedo_average(&self) -> f32 {
+        1.0 - self.lost_average()
+    }
+
+    /// Cosine-weighted averages of the moments over the hemisphere of views, by quadrature.
+    #[must_use]
+    pub fn average_moments(&self) -> Moments {
+        Moments::mirror_average().plus(self.average())
+    }
+
+    /// The averages, as the channels of tables.
+    fn average(&self) -> [f32; 3] {
+        let view = Elevation::Blend(&self.view);
+        less_mirror(over_views(&view, self.shape.views, &|cos| averaged(cos, self.rest(cos))))
     }
 
     /// E − 1 in [−1, 0], and the excess of the other moments over E times a mirror's.
@@ -154,15 +186,18 @@ impl ShapeAlbedoAt<'_> {
         down_to_grazing(self.shape.masking, self.view.floor() as f32, cos, at)
     }
 
-    fn interpolate(&self, cos: f32) -> [f32; 3] {
+    /// The first N channels.
+    fn interpolate<const N: usize>(&self, cos: f32) -> [f32; N] {
         let ShapeAlbedo { values, views, .. } = self.shape;
         let (first, view) = six(self.view.clamped(cos), *views);
-        let mut sum = [0.0; 3];
+        let mut sum = [0.0; N];
         // A table of fewer than six roughnesses has fewer rows.
         let rows = values[self.start * views..].chunks_exact(*views);
-        for (row, weight) in rows.zip(self.weights) {
-            for (sum, x) in sum.iter_mut().zip(combine(row, first, &view)) {
-                *sum += weight * x;
+        for (row, a) in rows.zip(self.weights) {
+            for (node, b) in row[first..first + SIX].iter().zip(view) {
+                for (sum, x) in sum.iter_mut().zip(node) {
+                    *sum += a * b * x;
+                }
             }
         }
         sum[0] = sum[0].clamp(-1.0, 0.0);

@@ -144,6 +144,11 @@ impl View {
         Self { scale: f32x4::from([knee, 1.0, 0.0, 0.0]) }
     }
 
+    /// About the cosine, over sin θ, at which half of the light is lost: σ where tails are short.
+    pub(super) fn reach(self) -> f32 {
+        self.scale.to_array()[0] / 6.0
+    }
+
     /// The cell of cos θ ∈ [0, 1], which is also the first of four coefficients, and their weights.
     #[inline(always)]
     pub(super) fn weights(self, cos: f32) -> (usize, f32x4) {
@@ -181,7 +186,7 @@ impl View {
             for _ in 0..60 {
                 x = low[0] + low[1] / (low[1] - high[1]) * (high[0] - low[0]);
                 let y = coordinate(x) - target;
-                if y.abs() < 1e-9 {
+                if y.abs() < 1e-6 {
                     break;
                 }
                 let end = if y < 0.0 { (&mut low, &mut high) } else { (&mut high, &mut low) };

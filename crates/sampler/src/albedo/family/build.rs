@@ -9,7 +9,7 @@ use microfacet_tables::{Mapping, Table};
 use super::axes::{Axes, View};
 use super::spline::{cubic, quadratic};
 use super::{FamilyAlbedo, LEAST, VIEWS};
-use crate::albedo::moments::{Moments, less_mirror};
+use crate::albedo::moments::{averaged, less_mirror};
 use crate::albedo::shape::ShapeAlbedo;
 
 impl FamilyAlbedo {
@@ -26,6 +26,8 @@ impl FamilyAlbedo {
             masking: table.subject.masking?,
             axes: Axes::new(gammas, ends, range.min <= 0.0),
             values: Vec::new(),
+            channel: 0,
+            shape: 0,
             averages: Vec::new(),
         };
         let gamma = |q: f32| (1.5 + 0.5 / f64::from(q)).clamp(gammas[0], gammas[1]);
@@ -41,6 +43,7 @@ impl FamilyAlbedo {
         let all = quadratic(all, width);
         let channel = |i: usize| all.iter().skip(i).step_by(3).map(|&x| x as f32);
         family.values = (0..3).flat_map(channel).collect();
+        (family.channel, family.shape) = (all.len() / 3, width / 3);
 
         let mut all = Vec::new();
         for &q in &shapes {
@@ -56,7 +59,7 @@ impl FamilyAlbedo {
 
     /// The averages over views of the lookups at σ and q: log₂(1 − E_avg) and the other channels.
     fn integrated(&self, sigma: f32, q: f32) -> [f64; 3] {
-        const RULE: [(f64, f64); 3] = gauss_legendre();
+        const RULE: [(f64, f64); 2] = gauss_legendre();
         let place = self.place(sigma, q);
         let mut sum = [0.0; 3];
         for ends in place.view.nodes().windows(2) {
@@ -67,11 +70,9 @@ impl FamilyAlbedo {
                 // 2μ dμ of h = root⁴: dμ/dh = 2 (1−h²)/(1+h²)².
                 let cube = root * root * root;
                 let share = 8.0 * cos * cube * sin * (1.0 + sin) * width * weight;
-                let (mirror, rest) = (Moments::mirror(cos as f32), place.rest(cos as f32));
-                let whole = mirror.plus(rest);
-                let less = [rest[0], whole.bias - mirror.bias, whole.f82 - mirror.f82];
+                let (less, _) = averaged(cos as f32, place.rest(cos as f32));
                 for (sum, x) in sum.iter_mut().zip(less) {
-                    *sum += share * f64::from(x);
+                    *sum += share * x;
                 }
             }
         }
