@@ -6,7 +6,7 @@ use wide::{bytemuck, f32x4, i32x4};
 /// positive normal numbers.
 ///
 /// Two continuous derivatives pass the powers of two, so that tables may have splines along it. It
-/// differs from log₂ by at most 0.004, which only moves nodes.
+/// differs from log₂ by at most 0.0045, which only moves nodes.
 #[inline(always)]
 pub(super) fn octaves(x: f32x4) -> f32x4 {
     let bits: i32x4 = bytemuck::cast(x);
@@ -47,7 +47,7 @@ mod tests {
         let slope = |x: f32| (one(1.01 * x) - one(0.99 * x)) / 0.02;
         for i in 0..4000 {
             let x = libm::exp2f(-30.0 + 0.01 * i as f32);
-            assert!((one(x) - libm::log2f(x)).abs() < 4e-3, "{x}");
+            assert!((one(x) - libm::log2f(x)).abs() < 4.5e-3, "{x}");
             // That of log₂ is 1/ln 2 = 1.4427.
             assert!((1.41..1.47).contains(&slope(x)), "{x}: {}", slope(x));
         }
