@@ -2,7 +2,7 @@
 //! their formulas and the distances of nodes.
 //!
 //! The constants were found by searching for the least error of E with a volume of half a MiB;
-//! `cargo test -p microfacet-sampler family -- --nocapture` prints the errors.
+//! `tests/family_albedo.rs` prints the errors.
 
 use alloc::vec::Vec;
 
