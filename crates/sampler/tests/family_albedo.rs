@@ -6,7 +6,7 @@ use microfacet_sampler::{
     Bsdf, BsdfSettings, Compensation, Conductor, ConductorFresnel, Masking, StudentT, Tables,
     Transport,
 };
-use microfacet_tables::{Kind, Table};
+use microfacet_tables::{Interval, Kind, Roughness, Table};
 
 fn view(cos: f32) -> Vec3 {
     Vec3::new(((1.0 - cos) * (1.0 + cos)).sqrt(), 0.0, cos)
@@ -225,6 +225,54 @@ fn sets_without_moments_are_refused() {
     let why = one.family_albedo(Masking::HeightCorrelated).unwrap_err().to_string();
     assert!(why.contains("masking"), "{why}");
     assert!(one.shape_albedo(1.4, Masking::Uncorrelated).is_err());
+}
+
+/// The default set, whose table of moments covers less.
+fn narrow(gamma: [f64; 2], sigma: [f64; 2]) -> Tables {
+    let set = Tables::embedded();
+    let moments = set.tables().iter().filter(|table| table.kind == Kind::Albedo);
+    let table = |table: &Table| {
+        let mut table = table.clone();
+        table.subject.lobe.gamma = Interval { min: gamma[0], max: gamma[1] };
+        table.subject.lobe.roughness =
+            Roughness::Isotropic(Interval { min: sigma[0], max: sigma[1] });
+        table
+    };
+    Tables::from_tables(set.provenance().clone(), moments.map(table).collect()).unwrap()
+}
+
+#[test]
+fn narrow_sets_are_covered_from_end_to_end_and_clamped_beyond() {
+    let tables = Tables::embedded();
+    let masking = Masking::HeightCorrelated;
+    let ranges = [
+        ([1.8, 4.0], [0.05, 1.0]),
+        ([2.0, 2.0], [0.05, 1.0]),
+        ([1.6, f64::INFINITY], [0.3, 0.3]),
+        ([2.5, 2.5], [0.3, 0.3]),
+    ];
+    for (gamma, sigma) in ranges {
+        let family = narrow(gamma, sigma).family_albedo(masking).unwrap();
+        assert!(family.bytes() < 300_000, "{gamma:?} {sigma:?}: {}", family.bytes());
+        let s = gamma.map(|gamma| 1.0 / (gamma - 1.0));
+        for x in [0.0, 0.21, 0.5, 0.83, 1.0] {
+            for y in [0.0, 0.4, 0.7, 1.0] {
+                let gamma = 1.0 + 1.0 / (s[0] + x * (s[1] - s[0]));
+                let sigma = sigma[0] * (sigma[1] / sigma[0]).powf(y);
+                let stored = tables.albedo(sigma, gamma, masking).unwrap();
+                let at = family.at(sigma as f32, gamma as f32);
+                for cos in [0.02, 0.2, 0.6, 1.0] {
+                    let off = stored.lost(view(cos)) - at.lost(view(cos));
+                    assert!(off.abs() < 5e-4, "{gamma} {sigma} {cos}: {off}");
+                }
+                let off = stored.lost_average() - at.lost_average();
+                assert!(off.abs() < 5e-4, "{gamma} {sigma}: {off}");
+            }
+        }
+        // Beyond the ends, and no mirror.
+        let [a, b] = [family.at(0.0, 1.0), family.at(sigma[0] as f32, gamma[0] as f32)];
+        assert!((a.lost(view(0.3)) - b.lost(view(0.3))).abs() < 1e-6 && a.lost(view(0.3)) > 0.0);
+    }
 }
 
 #[test]

@@ -173,26 +173,27 @@ fn estimate(lost: f32, single: f32, multiple: f32) -> f32 {
 macro_rules! compensations {
     ($($albedo:ty),*) => {$(
         impl $albedo {
-            /// Compensating factor on the single-scattering lobe, 1 + F0 (1 − E(v))/E(v), for a view and
-            /// one channel of the reflectance F0 at normal incidence.
+            /// Compensating factor on the single-scattering lobe, 1 + F0 (1 − E(v))/E(v), for a
+            /// view and one channel of the reflectance F0 at normal incidence.
             ///
-            /// Turquin 2019, *Practical multiple scattering compensation for microfacet models*, eq. 16,
-            /// <https://blog.selfshadow.com/publications/turquin/ms_comp_final.pdf>. Cheap, and keeps the
-            /// lobe's shape; not reciprocal. Where E is 0 (γ near 3/2 at large σ) the factor is limited to
-            /// 1e6.
+            /// Turquin 2019, *Practical multiple scattering compensation for microfacet models*,
+            /// eq. 16, <https://blog.selfshadow.com/publications/turquin/ms_comp_final.pdf>. Cheap,
+            /// and keeps the lobe's shape; not reciprocal. Where E is 0 (γ near 3/2 at large σ) the
+            /// factor is limited to 1e6.
             #[inline]
             #[must_use]
             pub fn turquin(&self, v: impl Into<[f32; 3]>, f0: f32) -> f32 {
                 turquin(self.lost(v), f0)
             }
 
-            /// The lobe of all bounces after the first with F = 1, (1 − E(v))(1 − E(l))/(π(1 − E_avg)) per
-            /// steradian.
+            /// The lobe of all bounces after the first with F = 1, (1 − E(v))(1 − E(l))/(π(1 −
+            /// E_avg)) per steradian.
             ///
-            /// A BRDF without the cosine; reciprocal; 0 where v or l is at or below the horizon. Multiply
-            /// by [`multiple_bounces`](Self::multiple_bounces) for coloured surfaces. Kulla & Conty 2017,
-            /// *Revisiting physically based shading at Imageworks*, slide "energy compensation"; after
-            /// Kelemen & Szirmay-Kalos 2001, eq. 11, <https://doi.org/10.2312/egs.20011003>.
+            /// A BRDF without the cosine; reciprocal; 0 where v or l is at or below the horizon.
+            /// Multiply by [`multiple_bounces`](Self::multiple_bounces) for coloured surfaces.
+            /// Kulla & Conty 2017, *Revisiting physically based shading at Imageworks*, slide
+            /// "energy compensation"; after Kelemen & Szirmay-Kalos 2001, eq. 11,
+            /// <https://doi.org/10.2312/egs.20011003>.
             #[inline]
             #[must_use]
             pub fn compensation(&self, v: impl Into<[f32; 3]>, l: impl Into<[f32; 3]>) -> f32 {
@@ -203,25 +204,25 @@ macro_rules! compensations {
                 self.compensation_from(self.lost(v), self.lost(l))
             }
 
-            /// [`compensation`](Self::compensation) from the losses 1 − E of view and light, for those that
-            /// look up the loss of a view once.
+            /// [`compensation`](Self::compensation) from the losses 1 − E of view and light, for
+            /// those that look up the loss of a view once.
             #[inline]
             #[must_use]
             pub fn compensation_from(&self, lost_v: f32, lost_l: f32) -> f32 {
                 kulla_conty(lost_v, lost_l, self.lost_average()) * FRAC_1_PI
             }
 
-            /// Draws a light for [`compensation`](Self::compensation) from two numbers in [0, 1] (clamped
-            /// to them, NaN to 0): cosine-weighted, which is close to the lobe of rough surfaces. Smooth
-            /// surfaces lose their light at grazing, where weights become large.
+            /// Draws a light for [`compensation`](Self::compensation) from two numbers in [0, 1]
+            /// (clamped to them, NaN to 0): cosine-weighted, which is close to the lobe of rough
+            /// surfaces. Smooth surfaces lose their light at grazing, where weights become large.
             #[inline]
             #[must_use]
             pub fn sample_compensation(&self, u: [f32; 2]) -> [f32; 3] {
                 Broad::COSINE.sample(u).to_array()
             }
 
-            /// Density of [`sample_compensation`](Self::sample_compensation), cos θ_l/π per steradian; 0
-            /// below the horizon.
+            /// Density of [`sample_compensation`](Self::sample_compensation), cos θ_l/π per
+            /// steradian; 0 below the horizon.
             #[inline]
             #[must_use]
             pub fn compensation_pdf(&self, l: impl Into<[f32; 3]>) -> f32 {
@@ -229,8 +230,8 @@ macro_rules! compensations {
                 if l.z > 0.0 { cosine_pdf(l) } else { 0.0 }
             }
 
-            /// The factor of [`compensation`](Self::compensation) for one channel of average reflectance
-            /// F_avg, F_avg² E_avg/(1 − F_avg(1 − E_avg)) ∈ [0, 1].
+            /// The factor of [`compensation`](Self::compensation) for one channel of average
+            /// reflectance F_avg, F_avg² E_avg/(1 − F_avg(1 − E_avg)) ∈ [0, 1].
             ///
             /// Kulla & Conty 2017, with the square that counts the first bounce (Hill 2018, *A
             /// multi-faceted exploration, part 2*).

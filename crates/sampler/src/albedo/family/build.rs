@@ -21,7 +21,7 @@ impl FamilyAlbedo {
         let Mapping::LogRoughness(mapping) = roughness.mapping else { return None };
         let first = mapping.quantity(roughness.nodes[0]);
         let range = lobe.roughness.x();
-        let ends = [range.min.max(first) as f32, range.max as f32];
+        let ends = [range.min, range.max].map(|sigma| sigma.max(first) as f32);
         let mut family = Self {
             masking: table.subject.masking?,
             axes: Axes::new(gammas, ends, range.min <= 0.0),

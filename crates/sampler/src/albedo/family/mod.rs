@@ -37,8 +37,8 @@ const PART: usize = 2 * VIEWS + FOUR;
 /// In the default set E differs from [`Tables::albedo`](crate::Tables::albedo) by at most 5e-4 for
 /// γ ≥ 1.6, 7e-4 for γ = 1.55 and 2.5e-3 down to 1.501 (where cos θ > 0.99), for σ ≥ 0.01 and
 /// cos θ ≥ 0.02. Elsewhere, for σ ≥ 1e-8 and cos θ ≥ 1e-4, by 1.5e-3 for γ ≥ 1.55, and 5e-3 for
-/// γ = 1.501. Bias and F82 differ by 3e-4 and 7e-4 for γ ≥ 1.55 inside, by 1.5e-3 elsewhere. Views of
-/// cos θ < 1e-4 are those of a continuation, which for γ < 1.6 misses the limit at the horizon.
+/// γ = 1.501. Bias and F82 differ by 3e-4 and 7e-4, elsewhere by 2e-3. Views of cos θ < 1e-4 are
+/// those of a continuation, which for γ < 1.6 misses the limit at the horizon.
 /// `cargo test --release -p microfacet-sampler --test family_albedo -- --nocapture` measures them.
 ///
 /// ```
@@ -58,7 +58,8 @@ const PART: usize = 2 * VIEWS + FOUR;
 pub struct FamilyAlbedo {
     masking: Masking,
     axes: Axes,
-    /// Coefficients of the square root of 1 − E, which keeps small losses apart, then of the excess of bias, then of F82: by γ, by σ, by view.
+    /// Coefficients of √(1 − E), of which small losses keep their order of magnitude, then of the
+    /// excess of bias, then of F82: by γ, by σ, by view.
     values: Vec<f32>,
     /// How far one channel is from the next, and one shape.
     channel: usize,
@@ -107,6 +108,7 @@ impl FamilyAlbedo {
 #[derive(Clone, Copy, Debug)]
 pub struct AlbedoAt<'a> {
     family: &'a FamilyAlbedo,
+    /// Where σ and γ are among the nodes.
     place: Place,
     mirror: bool,
     view: View,
