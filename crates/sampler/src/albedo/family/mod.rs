@@ -2,7 +2,8 @@
 //! (γ, σ, view), made once from a table of moments, in which a lookup costs little more than one in
 //! a texture.
 //!
-//! `axes` has the coordinates, `spline` the polynomials between nodes, and `build` fills the volume.
+//! `axes` has the coordinates, of which `octaves` is the logarithm, `spline` the polynomials between
+//! nodes, and `build` fills the volume.
 
 mod axes;
 mod build;
@@ -30,8 +31,8 @@ const PART: usize = 2 * VIEWS + FOUR;
 /// The directional albedo of the family under one form of masking, to be read at any σ and γ: for
 /// renderers that take them from textures.
 ///
-/// Made by [`Tables::family_albedo`](crate::Tables::family_albedo), once for all materials: it takes
-/// half a MiB. A lookup is [`at`](Self::at) a place on the surface, and then a method of
+/// Made by [`Tables::family_albedo`](crate::Tables::family_albedo), once for all materials: it
+/// takes half a MiB. A lookup is [`at`](Self::at) a place on the surface, and then a method of
 /// [`AlbedoAt`] for each view and light.
 ///
 /// In the default set E differs from [`Tables::albedo`](crate::Tables::albedo) by at most 5e-4 for
