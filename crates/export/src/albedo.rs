@@ -2,8 +2,7 @@
 
 use microfacet_core::Masking;
 use microfacet_sampler::Tables;
-use microfacet_sampler::albedo::Albedo;
-use microfacet_sampler::port::ShapeAlbedo;
+use microfacet_sampler::albedo::{Albedo, ShapeAlbedo};
 use microfacet_tables::SIGMA_MAX;
 use microfacet_tables::axis::lagrange::weights;
 use microfacet_tables::axis::{LogRoughness, ViewBlend};

@@ -74,6 +74,7 @@
 //! | evaluate and sample a lobe | [`MicrofacetDistribution`]: D, G1, visible normals; [`lobe::Reflecting`]: reflection off them; [`lobe::Batch`]: whole slices |
 //! | lose fewer samples below the horizon | [`StudentT::bounded`] |
 //! | compensate multiple scattering yourself | [`Tables::albedo`], [`albedo::Albedo`] |
+//! | take σ and γ from textures | [`Tables::family_albedo`], [`albedo::FamilyAlbedo`], [`Conductor::compensated_at`] |
 //! | write a set, or read one table | the crate [`microfacet_tables`] |
 //! | write the lookups in another language | [`port`] |
 //!

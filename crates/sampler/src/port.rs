@@ -6,7 +6,6 @@ use microfacet_tables::Table;
 use crate::material::slices;
 use crate::{MaterialError, Tables};
 
-pub use crate::albedo::shape::ShapeAlbedo;
 pub use crate::bsdf::steep_cosine;
 pub use crate::material::shape::{HeavyTables, ShapeTables};
 

@@ -7,7 +7,7 @@ use microfacet_tables::{Reflectance, Table};
 
 use super::curve::{Curve, MaterialPoint, Rows, missing};
 use super::elevation::Elevation;
-use super::moments::{Moments, below, less_mirror};
+use super::moments::{Moments, averaged, down_to_grazing, less_mirror};
 use crate::error::MaterialError;
 use crate::vector::vec3;
 
@@ -116,13 +116,7 @@ impl Albedo {
     /// writes into tables of averages.
     #[must_use]
     pub fn integrate(&self) -> [f32; 3] {
-        less_mirror(self.curve.average(|rows, view, cos| {
-            let rest = self.at(rows, view, cos);
-            let (mirror, e) = (Moments::mirror(cos), rest[0]);
-            let moments = mirror.plus(rest);
-            let less = [e, moments.bias - mirror.bias, moments.f82 - mirror.f82];
-            (less.map(f64::from), u32::from(e == 0.0) + 2 * u32::from(e == -1.0))
-        }))
+        less_mirror(self.curve.average(|rows, view, cos| averaged(cos, self.at(rows, view, cos))))
     }
 
     /// E − 1 in [−1, 0], and the excess of the other moments over E times a mirror's.
@@ -135,11 +129,6 @@ impl Albedo {
             let [e, bias, f82, _] = self.curve.at(rows, view, cos);
             [e, bias, f82]
         };
-        let (floor, here) = (view.floor() as f32, channels(cos));
-        // A mirror has E = 1 down to grazing.
-        if cos >= floor || here[0] == 0.0 {
-            return here;
-        }
-        below(self.masking, floor, cos, here, channels(4.0 * floor))
+        down_to_grazing(self.masking, view.floor() as f32, cos, channels)
     }
 }

@@ -3,21 +3,28 @@
 //!
 //! Every lobe and reflectance goes the same way: `find` chooses the table by its description,
 //! `curve` collapses the axes of the material, which leaves a curve over the view, and
-//! `directional` makes moments of its channels.
+//! `directional` makes moments of its channels. `shape` collapses the axis of γ alone, and `family`
+//! none: they are for renderers that take σ, or both, from textures. `common` is what the three
+//! forms have in common.
 //!
 //! The averages of reflectances over the hemisphere are for a compensation of your own.
 
 mod average;
+mod common;
 mod curve;
 mod directional;
 mod elevation;
+mod family;
 mod find;
 mod moments;
 mod reflectance_average;
-pub(crate) mod shape;
+mod shape;
 
 pub use crate::error::Covered;
+pub use common::DirectionalAlbedo;
 pub use curve::{DielectricAlbedo, FresnelAlbedo, ViewCurve};
 pub use directional::Albedo;
+pub use family::{AlbedoAt, FamilyAlbedo};
 pub use moments::Moments;
 pub use reflectance_average::{f82_tint_average, fresnel_average, schlick_average};
+pub use shape::{ShapeAlbedo, ShapeAlbedoAt};

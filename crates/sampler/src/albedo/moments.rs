@@ -75,13 +75,7 @@ fn whole(cos: f32, [e, bias, f82]: [f32; 3]) -> [f32; 3] {
 /// M(μ) = M(μ₀) + (M(μ₀) − M(4μ₀)) (1 − (μ/μ₀)^p)/(4^p − 1). For uncorrelated masking p is 1. With
 /// height-correlated masking 1 − E falls, for an untilted lobe to 0: p is the power of 1 − E, or 0,
 /// which holds everything constant, if 1 − E does not fall.
-pub(super) fn below(
-    masking: Masking,
-    floor: f32,
-    cos: f32,
-    first: [f32; 3],
-    above: [f32; 3],
-) -> [f32; 3] {
+fn below(masking: Masking, floor: f32, cos: f32, first: [f32; 3], above: [f32; 3]) -> [f32; 3] {
     let power = match masking {
         Masking::Uncorrelated => 1.0,
         // NaN fails the comparison, too, and everything is held constant.
@@ -101,6 +95,31 @@ pub(super) fn below(
     let e = moved[0].clamp(-1.0, 0.0);
     let mirror = Moments::mirror(cos);
     [e, moved[1] - (1.0 + e) * mirror.bias, moved[2] - (1.0 + e) * mirror.f82]
+}
+
+/// The channels at any cos θ: those of `at` from `floor` on, the first view of a table, and
+/// [`below`] it.
+pub(super) fn down_to_grazing(
+    masking: Masking,
+    floor: f32,
+    cos: f32,
+    at: impl Fn(f32) -> [f32; 3],
+) -> [f32; 3] {
+    let here = at(cos);
+    // A mirror has E = 1 down to grazing.
+    if cos >= floor || here[0] == 0.0 {
+        return here;
+    }
+    below(masking, floor, cos, here, at(4.0 * floor))
+}
+
+/// What is averaged over views, from the channels at a view: the excess of whole moments over those
+/// of a mirror, and whether E is clamped.
+pub(super) fn averaged(cos: f32, rest: [f32; 3]) -> ([f64; 3], u32) {
+    let (mirror, e) = (Moments::mirror(cos), rest[0]);
+    let moments = mirror.plus(rest);
+    let less = [e, moments.bias - mirror.bias, moments.f82 - mirror.f82];
+    (less.map(f64::from), u32::from(e == 0.0) + 2 * u32::from(e == -1.0))
 }
 
 /// Turns averages of whole moments into the tables' channels.

@@ -14,6 +14,7 @@ use crate::tables::Tables;
 /// scene.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
+#[allow(clippy::large_enum_variant, reason = "in a box each call would begin with a load")]
 pub enum AnyBsdf {
     /// A conductor.
     Conductor(Conductor<Lobe>),

@@ -3,12 +3,12 @@
 use glam::Vec3;
 use microfacet_core::Masking;
 
-use super::compensation::{Compensation, Returned};
+use super::compensation::{Compensation, Density, Returned};
 use super::mixture::{Mixture, are_finite, choice, chosen};
 use super::reflectance::ConductorFresnel;
 use super::settings::BsdfSettings;
 use super::{Bsdf, BsdfSample, Transport};
-use crate::albedo::Albedo;
+use crate::albedo::{Albedo, AlbedoAt, DirectionalAlbedo};
 use crate::bind_error::BindError;
 use crate::material::{Facets, Part, Reflecting, Tabulated, White};
 use crate::vector::vec3;
@@ -20,12 +20,12 @@ use crate::vector::vec3;
 /// F·G2/G1 is at most 1. A compensation adds the light of further bounces. Black from below.
 /// With a [`Bounded`](crate::lobe::Bounded) lobe fewer samples are lost.
 #[derive(Clone, Debug)]
-pub struct Conductor<L, const N: usize = 3> {
+pub struct Conductor<L, const N: usize = 3, A = Albedo> {
     lobe: L,
     fresnel: ConductorFresnel<N>,
     masking: Masking,
     smooth: bool,
-    returned: Option<Returned<N>>,
+    returned: Option<Returned<N, A>>,
 }
 
 impl<L: Reflecting + Tabulated, const N: usize> Conductor<L, N> {
@@ -56,14 +56,51 @@ impl<L: Reflecting, const N: usize> Conductor<L, N> {
     /// form of masking becomes that of the conductor.
     #[must_use]
     pub fn compensated_by(self, albedo: Albedo, compensation: Compensation) -> Self {
-        let masking = albedo.masking();
-        let returned = match self.smooth {
-            true => None,
-            false => Returned::new(albedo, compensation, &self.fresnel),
-        };
-        Self { masking, returned, ..self }
+        self.with(albedo, compensation, Density::of_albedo)
     }
 
+    /// This conductor with a compensation by the albedo at a hit, which must be that of the lobe's
+    /// σ and γ; its form of masking becomes that of the conductor.
+    ///
+    /// Nothing is tabulated: it takes some lookups, and the average of the reflectance, which is in
+    /// closed form for Schlick's and for a mirror.
+    ///
+    /// ```
+    /// # #[cfg(feature = "embedded")] {
+    /// use microfacet_sampler::{BsdfSettings, Compensation, Conductor, Metal, Tables};
+    ///
+    /// let tables = Tables::embedded();
+    /// let family = tables.family_albedo(Default::default())?; // once
+    /// let lobe = tables.student_t(0.3, 2.5)?;
+    /// let gold = Conductor::new(lobe, Metal::Gold, BsdfSettings::new())?;
+    /// let gold = gold.compensated_at(family.at(0.3, 2.5), Compensation::KullaConty);
+    /// # }
+    /// # Ok::<(), microfacet_sampler::BindError>(())
+    /// ```
+    #[must_use]
+    pub fn compensated_at<'a>(
+        self,
+        albedo: AlbedoAt<'a>,
+        compensation: Compensation,
+    ) -> Conductor<L, N, AlbedoAt<'a>> {
+        self.with(albedo, compensation, Density::at)
+    }
+
+    fn with<A: DirectionalAlbedo>(
+        self,
+        albedo: A,
+        compensation: Compensation,
+        density: fn(&A) -> Density,
+    ) -> Conductor<L, N, A> {
+        let Self { lobe, fresnel, smooth, .. } = self;
+        let masking = albedo.masking();
+        let returned =
+            (!smooth).then(|| Returned::new(albedo, compensation, &fresnel, density)).flatten();
+        Conductor { lobe, fresnel, masking, smooth, returned }
+    }
+}
+
+impl<L: Reflecting, const N: usize, A: DirectionalAlbedo> Conductor<L, N, A> {
     /// The lobe.
     #[must_use]
     pub fn lobe(&self) -> &L {
@@ -89,7 +126,7 @@ impl<L: Reflecting, const N: usize> Conductor<L, N> {
 
     /// One bounce and the compensation of the light that it loses, at a light from above.
     #[inline(always)]
-    fn mixture(&self, returned: &Returned<N>, lost: f32, l: Vec3, white: White) -> Mixture<N> {
+    fn mixture(&self, returned: &Returned<N, A>, lost: f32, l: Vec3, white: White) -> Mixture<N> {
         let single = white.part(self.fresnel.at(white.cos));
         let factor = returned.factor(lost);
         let facets =
@@ -101,7 +138,7 @@ impl<L: Reflecting, const N: usize> Conductor<L, N> {
     #[inline(never)]
     fn sample_mixture(
         &self,
-        returned: &Returned<N>,
+        returned: &Returned<N, A>,
         v: Vec3,
         number: f32,
         u: [f32; 2],
@@ -114,7 +151,7 @@ impl<L: Reflecting, const N: usize> Conductor<L, N> {
         let (l, white) = if is_facet {
             self.facets().draw::<true>(v, u)?
         } else {
-            let l = returned.broad().sample_above(u)?;
+            let l = returned.sample_above(u)?;
             (l, self.facets().halfway(v, l))
         };
         let mixture = self.mixture(returned, lost, l, white);
@@ -122,7 +159,7 @@ impl<L: Reflecting, const N: usize> Conductor<L, N> {
     }
 
     #[inline(never)]
-    fn eval_mixture(&self, returned: &Returned<N>, v: Vec3, l: Vec3) -> ([f32; N], f32) {
+    fn eval_mixture(&self, returned: &Returned<N, A>, v: Vec3, l: Vec3) -> ([f32; N], f32) {
         if !are_finite(v, l) {
             return ([0.0; N], 0.0);
         }
@@ -159,7 +196,7 @@ impl<L: Reflecting, const N: usize> Conductor<L, N> {
     }
 }
 
-impl<L: Reflecting, const N: usize> Bsdf<N> for Conductor<L, N> {
+impl<L: Reflecting, const N: usize, A: DirectionalAlbedo> Bsdf<N> for Conductor<L, N, A> {
     #[inline(always)]
     fn sample_with_pdf(
         &self,

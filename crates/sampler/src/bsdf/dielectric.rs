@@ -220,7 +220,7 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
             (1 - seen.side, 1.0 - reflected, scale)
         };
         let lobe = [energy.lobe(lost, side, &energy.shares(side, l)) * scale; N];
-        let broad = Part::broad(l, &broad[side], share, lobe);
+        let broad = Part::broad(l, broad[side].factor(l), share, lobe);
         Mixture { p: 1.0 - lost, facets, broad }
     }
 

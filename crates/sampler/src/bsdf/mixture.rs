@@ -5,14 +5,14 @@ use glam::Vec3;
 use microfacet_core::math::unit;
 use microfacet_core::saturated;
 
-use super::broad::{Broad, cosine_pdf};
+use super::broad::cosine_pdf;
 use crate::material::Part;
 
 impl<const N: usize> Part<N> {
-    /// The broad lobe at a light: its share on the side of that light, and π f over that share.
+    /// The broad lobe at a light, from the factor of its density, its share on the side of that
+    /// light, and π f over that share.
     #[inline(always)]
-    pub(super) fn broad(l: Vec3, broad: &Broad, share: f32, lobe: [f32; N]) -> Self {
-        let factor = broad.factor(l);
+    pub(super) fn broad(l: Vec3, factor: f32, share: f32, lobe: [f32; N]) -> Self {
         Self { weight: lobe.map(|lobe| lobe / factor), pdf: share * factor * cosine_pdf(l) }
     }
 }
@@ -85,7 +85,7 @@ mod tests {
         let mixture = Mixture {
             p: 0.7,
             facets: Part { weight: [0.9, 0.2], pdf: 3.0 },
-            broad: Part::broad(l, &Broad::COSINE, 0.5, [0.1, 0.4]),
+            broad: Part::broad(l, 1.0, 0.5, [0.1, 0.4]),
         };
         let (f, pdf) = mixture.f_pdf(l);
         for (weight, f) in mixture.weight().into_iter().zip(f) {

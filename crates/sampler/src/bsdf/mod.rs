@@ -3,10 +3,10 @@
 //!
 //! `conductor`, `dielectric` and `plastic` are the BSDFs, `any` any of them; `reflectance` is
 //! Fresnel's or Schlick's of conductors, `metal` metals by name, and `interface` the geometry of
-//! refraction. `mixture` joins single reflection with `broad`, the density of light
-//! of further bounces. `energy` and `compensation` compute the shares of light that one bounce
-//! returns and loses; `settings` says how BSDFs are made, `bind` finds albedos in tables, and
-//! `coat` computes that of a coat without tables.
+//! refraction. `mixture` joins single reflection with `broad`, the density of light of further
+//! bounces, or `grazing`, its closed form. `energy` and `compensation` compute the shares of light
+//! that one bounce returns and loses; `settings` says how BSDFs are made, `bind` finds albedos in
+//! tables, and `coat` computes that of a coat without tables.
 
 mod any;
 mod bind;
@@ -16,6 +16,7 @@ mod compensation;
 mod conductor;
 mod dielectric;
 mod energy;
+mod grazing;
 mod interface;
 mod metal;
 mod mixture;

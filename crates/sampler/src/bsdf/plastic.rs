@@ -214,7 +214,7 @@ impl<L: Reflecting, const N: usize> Plastic<L, N> {
         let coat =
             energy.reflected(OUTSIDE) * energy.lobe(energy.returned(shares), OUTSIDE, &there);
         let lobe = self.diffuse.map(|diffuse| entering * leaving * diffuse + coat);
-        Part::broad(l, &self.broad, 1.0, lobe)
+        Part::broad(l, self.broad.factor(l), 1.0, lobe)
     }
 }
 

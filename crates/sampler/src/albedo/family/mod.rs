@@ -1,0 +1,245 @@
+//! The directional albedo at any shape and roughness, for textures of σ and γ: a volume over
+//! (γ, σ, view), made once from a table of moments, in which a lookup costs little more than one in
+//! a texture.
+//!
+//! `axes` has the coordinates, of which `octaves` is the logarithm, `spline` the polynomials between
+//! nodes, and `build` fills the volume.
+
+mod axes;
+mod build;
+mod octaves;
+mod spline;
+
+use alloc::vec::Vec;
+
+use microfacet_core::Masking;
+use microfacet_core::math::unit;
+use wide::f32x4;
+
+use self::axes::{AVERAGE, Axes, Place, SHAPE, SIGMA, View};
+use self::spline::{FOUR, THREE};
+use super::moments::Moments;
+use crate::elementary::exp2;
+use crate::vector::vec3;
+
+/// Coefficients along the view.
+const VIEWS: usize = View::CELLS + 3;
+/// What a lookup reads of one shape: from the first of four coefficients of the first of three
+/// roughnesses to the last of the last.
+const PART: usize = 2 * VIEWS + FOUR;
+
+/// The directional albedo of the family under one form of masking, to be read at any σ and γ: for
+/// renderers that take them from textures.
+///
+/// Made by [`Tables::family_albedo`](crate::Tables::family_albedo), once for all materials: it
+/// takes half a MiB. A lookup is [`at`](Self::at) a place on the surface, and then a method of
+/// [`AlbedoAt`] for each view and light.
+///
+/// In the default set E differs from [`Tables::albedo`](crate::Tables::albedo) by at most 5e-4 for
+/// γ ≥ 1.6, 7e-4 for γ = 1.55 and 2.5e-3 down to 1.501 (where cos θ > 0.99), for σ ≥ 0.01 and
+/// cos θ ≥ 0.02. Elsewhere, for σ ≥ 1e-8 and cos θ ≥ 1e-4, by 1.5e-3 for γ ≥ 1.55, and 5e-3 for
+/// γ = 1.501. Bias and F82 differ by 3e-4 and 7e-4, elsewhere by 2e-3. Views of cos θ < 1e-4 are
+/// those of a continuation, which for γ < 1.6 misses the limit at the horizon.
+/// `cargo test --release -p microfacet-sampler --test family_albedo -- --nocapture` measures them.
+///
+/// ```
+/// # #[cfg(feature = "embedded")] {
+/// use microfacet_sampler::{Masking, Tables};
+///
+/// let family = Tables::embedded().family_albedo(Masking::HeightCorrelated)?; // once
+/// let albedo = family.at(0.8, 3.0); // at every hit
+/// let v = [0.6, 0.0, 0.8];
+/// let gold = albedo.moments(v).schlick(0.77, 1.0); // green: F0, F90
+/// let factor = albedo.turquin(v, 0.77);
+/// assert!(albedo.albedo(v) < 1.0 && gold < albedo.albedo(v) && factor > 1.0);
+/// # }
+/// # Ok::<(), microfacet_sampler::MaterialError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct FamilyAlbedo {
+    masking: Masking,
+    axes: Axes,
+    /// Coefficients of √(1 − E), of which small losses keep their order of magnitude, then of the
+    /// excess of bias, then of F82: by γ, by σ, by view.
+    values: Vec<f32>,
+    /// How far one channel is from the next, and one shape.
+    channel: usize,
+    shape: usize,
+    /// Coefficients of log₂(1 − E_avg) and of the averages of the other two: by γ, by σ.
+    averages: Vec<[f32; 4]>,
+}
+
+impl FamilyAlbedo {
+    /// The albedo at a roughness σ and a shape γ, of those that the set covers.
+    ///
+    /// Both are clamped to the ranges that the set's table covers, in the default set σ to
+    /// [1e-8, 3] and γ to [1.501, ∞], which is Beckmann; NaN counts as the smallest. σ ≤ 0 is a
+    /// mirror, with E = 1, where the set covers σ = 0.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, sigma: f32, gamma: f32) -> AlbedoAt<'_> {
+        let (sigma, q) = self.axes.clamped(sigma, gamma);
+        self.place(sigma, q)
+    }
+
+    #[inline(always)]
+    fn place(&self, sigma: f32, q: f32) -> AlbedoAt<'_> {
+        let place = self.axes.place(sigma, q);
+        AlbedoAt { family: self, place, view: View::new(sigma, q), mirror: sigma == 0.0 }
+    }
+
+    /// The form of masking.
+    #[must_use]
+    pub fn masking(&self) -> Masking {
+        self.masking
+    }
+
+    /// The memory that it takes, in bytes.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        size_of::<Self>() + size_of_val(&self.values[..]) + size_of_val(&self.averages[..])
+    }
+}
+
+/// The directional albedo at one σ and γ, read from a [`FamilyAlbedo`]; as small as some numbers.
+///
+/// Its methods are those of [`Albedo`](crate::albedo::Albedo), for which it stands in. `v` is a
+/// unit vector in the tangent frame, n = +z; a view at or below the horizon, or with NaN in `v.z`,
+/// is the grazing view.
+#[derive(Clone, Copy, Debug)]
+pub struct AlbedoAt<'a> {
+    family: &'a FamilyAlbedo,
+    /// Where σ and γ are among the nodes.
+    place: Place,
+    mirror: bool,
+    view: View,
+}
+
+impl AlbedoAt<'_> {
+    /// The form of masking.
+    #[must_use]
+    pub fn masking(&self) -> Masking {
+        self.family.masking
+    }
+
+    /// The directional albedo E(v) with F = 1, in [0, 1].
+    #[inline]
+    #[must_use]
+    pub fn albedo(&self, v: impl Into<[f32; 3]>) -> f32 {
+        1.0 - self.lost(v)
+    }
+
+    /// The share of light lost, 1 − E(v).
+    #[inline]
+    #[must_use]
+    pub fn lost(&self, v: impl Into<[f32; 3]>) -> f32 {
+        self.lost_at(self.along(unit(vec3(v).z)))
+    }
+
+    /// Moments of the Fresnel weights at a view, each in [0, 1], with a total of at most 1.
+    #[inline]
+    #[must_use]
+    pub fn moments(&self, v: impl Into<[f32; 3]>) -> Moments {
+        let cos = unit(vec3(v).z);
+        Moments::mirror(cos).plus(self.rest(cos))
+    }
+
+    /// The average albedo E_avg = 1/π ∫∫ E μ dμ dφ with F = 1.
+    #[must_use]
+    pub fn albedo_average(&self) -> f32 {
+        1.0 - self.lost_average()
+    }
+
+    /// The average share of light lost, 1 − E_avg, with all its digits.
+    ///
+    /// It is that of these lookups, so that a white furnace closes: E(v), and (1 − E(v)) times the
+    /// integral of (1 − E)/(1 − E_avg), are 1 to 3e-3 for σ ≥ 1e-5, and to 1e-2 for σ ≥ 1e-8.
+    #[must_use]
+    pub fn lost_average(&self) -> f32 {
+        0.0 - self.average()[0]
+    }
+
+    /// Cosine-weighted averages of the moments over the hemisphere of views: 1/π ∫∫ · μ dμ dφ.
+    #[must_use]
+    pub fn average_moments(&self) -> Moments {
+        Moments::mirror_average().plus(self.average())
+    }
+
+    /// Within about how much of the horizon light is lost, as a cosine.
+    pub(crate) fn reach(&self) -> f32 {
+        self.view.reach()
+    }
+
+    /// E − 1 in [−1, 0], and the excess of the other moments over E times a mirror's.
+    #[inline(always)]
+    fn rest(&self, cos: f32) -> [f32; 3] {
+        if self.mirror {
+            return [0.0; 3];
+        }
+        let along = self.along(cos);
+        [0.0 - self.lost_at(along), self.channel(1, along), self.channel(2, along)]
+    }
+
+    /// The cell of a view, and the weights of its four coefficients.
+    #[inline(always)]
+    fn along(&self, cos: f32) -> (usize, f32x4) {
+        self.view.weights(cos)
+    }
+
+    #[inline(always)]
+    fn lost_at(&self, along: (usize, f32x4)) -> f32 {
+        let root = self.channel(0, along);
+        let lost = root * root;
+        if self.mirror {
+            0.0
+        } else if lost < 1.0 {
+            lost
+        } else {
+            1.0
+        }
+    }
+
+    /// The square root of 1 − E, or the excess of another moment.
+    #[inline(always)]
+    fn channel(&self, channel: usize, (cell, along): (usize, f32x4)) -> f32 {
+        let (family, (first, weights)) = (self.family, &self.place);
+        let [a, b, c] = weights.map(|weight| weight.to_array()[SIGMA]);
+        let mut at =
+            channel * family.channel + first[SHAPE] * family.shape + first[SIGMA] * VIEWS + cell;
+        let mut sum = f32x4::ZERO;
+        for weight in weights {
+            let weight = weight.to_array()[SHAPE];
+            let part: &[f32; PART] = family.values[at..].first_chunk().expect("in the volume");
+            at += family.shape;
+            let four = |j: usize| -> f32x4 {
+                let four: &[f32; FOUR] = part[j * VIEWS..].first_chunk().expect("in the part");
+                f32x4::from(*four)
+            };
+            sum += (four(0) * a + four(1) * b + four(2) * c) * weight;
+        }
+        let [a, b, c, d] = (sum * along).to_array();
+        (a + b) + (c + d)
+    }
+
+    /// The averages, as the channels of tables.
+    fn average(&self) -> [f32; 3] {
+        if self.mirror {
+            return [0.0; 3];
+        }
+        let (first, weights) = &self.place;
+        let mut sum = f32x4::ZERO;
+        for (i, a) in weights.iter().enumerate() {
+            let a = a.to_array()[SHAPE];
+            let first =
+                (first[SHAPE] + i) * (self.family.axes.counts[AVERAGE] + 2) + first[AVERAGE];
+            for (node, b) in self.family.averages[first..first + THREE].iter().zip(weights) {
+                sum += f32x4::from(*node) * (a * b.to_array()[AVERAGE]);
+            }
+        }
+        let [log, bias, f82, _] = sum.to_array();
+        [0.0 - unit(exp2(sum).to_array()[0]), bias, f82].map(|x| if log < LEAST { 0.0 } else { x })
+    }
+}
+
+/// The logarithm of a loss that counts as none.
+const LEAST: f32 = -120.0;
