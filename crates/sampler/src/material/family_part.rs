@@ -182,6 +182,7 @@ impl<'a> AtShape<'a> {
 
 impl<'a> Shape for AtShape<'a> {
     type Seed = (&'a Part, f32);
+    type MaskingCell = f32x4;
 
     #[inline(always)]
     fn seed(self) -> Self::Seed {
@@ -279,10 +280,14 @@ impl<'a> Shape for AtShape<'a> {
     }
 
     #[inline(always)]
-    fn masking(self, cell: usize, w: f32) -> Option<f32> {
-        let nodes = self.part.masking.pair(self.masking, cell);
+    fn masking_cell(self, cell: usize) -> Option<f32x4> {
+        Some(self.part.masking.pair(self.masking, cell))
+    }
+
+    #[inline(always)]
+    fn masking(nodes: f32x4, w: f32) -> f32 {
         let [v0, s0, v1, s1] = nodes.to_array();
-        Some(hermite([v0, s0], [v1, s1], w))
+        hermite([v0, s0], [v1, s1], w)
     }
 
     #[inline(always)]

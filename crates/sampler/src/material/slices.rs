@@ -204,8 +204,9 @@ impl Slices {
     }
 }
 
-impl Shape for &Slices {
+impl<'a> Shape for &'a Slices {
     type Seed = Self;
+    type MaskingCell = &'a Cell;
 
     #[inline(always)]
     fn seed(self) -> Self {
@@ -293,8 +294,13 @@ impl Shape for &Slices {
     }
 
     #[inline(always)]
-    fn masking(self, cell: usize, w: f32) -> Option<f32> {
-        Some(horner(self.shadowing.get(cell)?, w))
+    fn masking_cell(self, cell: usize) -> Option<&'a Cell> {
+        self.shadowing.get(cell)
+    }
+
+    #[inline(always)]
+    fn masking(cell: &Cell, w: f32) -> f32 {
+        horner(cell, w)
     }
 
     #[inline(always)]

@@ -56,8 +56,10 @@ pub(crate) trait Shape: Copy {
     /// κ of the view coordinate of G1; the coordinate, and its number of cells.
     fn kappa(self) -> f32;
     fn masking_view(self) -> (Rational, f32);
-    /// G1/q over the number of cells.
-    fn masking(self, cell: usize, w: f32) -> Option<f32>;
+    /// G1/q over the number of cells: a cell of it, and its value there.
+    type MaskingCell;
+    fn masking_cell(self, cell: usize) -> Option<Self::MaskingCell>;
+    fn masking(cell: Self::MaskingCell, w: f32) -> f32;
     /// The same of a view and a light, in the first two lanes.
     fn masking_of_two(self, cells: [usize; 2], w: f32x4) -> Option<f32x4>;
     fn masking_lanes(self, cells: [i32; LANES], w: f32x4) -> f32x4;
@@ -98,8 +100,8 @@ pub(crate) trait Shape: Copy {
         let r = cells / (w.z + kappa * w.rho).max(LEAST_AREA);
         let (cell, w) = split(f32x4::splat(view.of_view(w.rho, w.z, kappa, r, cells)));
         // G1/q over the number of cells. The index is out of the table only for NaN.
-        let value = self.masking(cell.to_array()[0] as u32 as usize, w.to_array()[0]);
-        value.unwrap_or(0.0) * r
+        let cell = self.masking_cell(cell.to_array()[0] as u32 as usize);
+        cell.map_or(0.0, |cell| Self::masking(cell, w.to_array()[0])) * r
     }
 
     /// Whether a lobe of this shape with roughness σ is smooth, see

@@ -14,7 +14,6 @@ use crate::vector::vec3;
 
 /// Returns 0, the G1 of NaN; cold, so that the common path stays short.
 #[cold]
-#[inline(never)]
 fn g1_of_nan<T: Default>() -> T {
     T::default()
 }
@@ -38,10 +37,10 @@ impl<S: Shape> Surface<S> {
         let [q, at] = view.of_views(across, z, cells);
         let (cell, w) = split(at);
         let cell = cell.to_array()[0] as u32 as usize;
-        let Some(value) = self.shape.masking(cell, w.to_array()[0]) else {
+        let Some(cell) = self.shape.masking_cell(cell) else {
             return g1_of_nan();
         };
-        let g1 = q.to_array()[0] * value;
+        let g1 = q.to_array()[0] * S::masking(cell, w.to_array()[0]);
         // The null vector gives 0/0: an index out of the table where the cast does not saturate,
         // and cell 0 where it does.
         if cfg!(not(target_feature = "sse2")) && g1.is_nan() {
