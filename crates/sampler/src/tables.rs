@@ -259,8 +259,9 @@ impl Tables {
 
     /// The lobe of a named material of the set's recipe, whatever its distribution.
     ///
-    /// A range in the recipe is taken at its middle, of σ and of s = 1/(γ−1); use
-    /// [`lobe`](Self::lobe) for other values.
+    /// A range in the recipe is taken at its middle, of σ and of s = 1/(γ−1). At the hits of a
+    /// texture use [`StudentT::with_roughness`] or [`family`](Self::family), for single values
+    /// [`lobe`](Self::lobe).
     ///
     /// # Errors
     /// [`BindError::NoSuchMaterial`] naming those that exist, or what [`lobe`](Self::lobe) and

@@ -5,12 +5,19 @@ use microfacet_core::math::unit;
 use microfacet_core::schlick::{f82_dip, f82_weight, schlick};
 
 use super::metal::Metal;
-use crate::albedo::{fresnel_average, schlick_average};
+use crate::albedo::{f82_tint_average, fresnel_average, schlick_average};
 use crate::bind_error::BindError;
 
 /// The reflectance of a conductor's facets, in N channels.
+///
+/// Make it once for a material: the averages over the hemisphere, which a compensation needs at
+/// every hit, are computed here. They take a quadrature of some microseconds for Fresnel's
+/// equations, and for a tint that darkens more than F0; else they have a closed form.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ConductorFresnel<const N: usize = 3>(Form<N>);
+pub struct ConductorFresnel<const N: usize = 3> {
+    form: Form<N>,
+    average: [f32; N],
+}
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Form<const N: usize> {
@@ -37,7 +44,7 @@ impl<const N: usize> ConductorFresnel<N> {
     /// F = 1, as of a perfect mirror.
     #[must_use]
     pub const fn mirror() -> Self {
-        Self(Form::Mirror)
+        Self { form: Form::Mirror, average: [1.0; N] }
     }
 
     /// Schlick's approximation F0 + (1 − F0)(1 − μ)⁵ (1994,
@@ -47,7 +54,7 @@ impl<const N: usize> ConductorFresnel<N> {
     /// [`BindError::Reflectance`] unless every F0, at normal incidence, lies in [0, 1].
     pub fn schlick(f0: [f32; N]) -> Result<Self, BindError> {
         reflectances("f0", &f0)?;
-        Ok(Self(Form::Schlick { f0 }))
+        Ok(Self { form: Form::Schlick { f0 }, average: f0.map(|f0| schlick_average(f0, 1.0)) })
     }
 
     /// OpenPBR's metal: Schlick's with a tint of the reflectance at μ = 1/7, about 82° (Kutz, Hašan
@@ -60,7 +67,14 @@ impl<const N: usize> ConductorFresnel<N> {
         reflectances("f0", &f0)?;
         reflectances("tint", &tint)?;
         let dip = core::array::from_fn(|i| f82_dip(f0[i], tint[i]));
-        Ok(Self(Form::Tinted { f0, dip }))
+        let mut made = Self { form: Form::Tinted { f0, dip }, average: [0.0; N] };
+        made.average = core::array::from_fn(|i| {
+            // The dip is largest at its peak; where F0 exceeds that, the reflectance is not cut
+            // off at 0.
+            let closed = f0[i] >= dip[i];
+            if closed { f82_tint_average(f0[i], tint[i]) } else { made.integrated(i) }
+        });
+        Ok(made)
     }
 
     /// Fresnel's equations for a complex index η + ik relative to the medium outside.
@@ -70,7 +84,10 @@ impl<const N: usize> ConductorFresnel<N> {
     pub fn exact(eta: [f64; N], k: [f64; N]) -> Result<Self, BindError> {
         indices("eta", &eta, ETA)?;
         indices("k", &k, K)?;
-        Ok(Self(Form::Exact { eta: eta.map(|x| x as f32), k: k.map(|x| x as f32) }))
+        let form = Form::Exact { eta: eta.map(|x| x as f32), k: k.map(|x| x as f32) };
+        let mut made = Self { form, average: [0.0; N] };
+        made.average = core::array::from_fn(|i| made.integrated(i));
+        Ok(made)
     }
 
     /// The reflectance of light at a cosine v·m, clamped to [0, 1]; each in [0, 1].
@@ -78,7 +95,7 @@ impl<const N: usize> ConductorFresnel<N> {
     #[must_use]
     pub fn at(&self, cos_theta: f32) -> [f32; N] {
         let cos = unit(cos_theta);
-        match &self.0 {
+        match &self.form {
             Form::Mirror => [1.0; N],
             Form::Schlick { f0 } => f0.map(|f0| schlick(f0, 1.0, cos)),
             Form::Tinted { f0, dip } => {
@@ -94,11 +111,12 @@ impl<const N: usize> ConductorFresnel<N> {
     /// Cosine-weighted averages over the hemisphere, 2∫₀¹ F(μ) μ dμ.
     #[must_use]
     pub fn average(&self) -> [f32; N] {
-        match &self.0 {
-            Form::Mirror => [1.0; N],
-            Form::Schlick { f0 } => f0.map(|f0| schlick_average(f0, 1.0)),
-            _ => core::array::from_fn(|i| fresnel_average(|cos| self.at(cos)[i])),
-        }
+        self.average
+    }
+
+    /// The average of a channel by quadrature.
+    fn integrated(&self, channel: usize) -> f32 {
+        fresnel_average(|cos| self.at(cos)[channel])
     }
 }
 
@@ -157,10 +175,12 @@ mod tests {
 
     #[test]
     fn averages_are_those_of_the_reflectance() {
-        let all: [ConductorFresnel; 4] = [
+        let all: [ConductorFresnel; 5] = [
             ConductorFresnel::mirror(),
             ConductorFresnel::schlick([0.0, 0.5, 1.0]).unwrap(),
             ConductorFresnel::f82_tint([0.2, 0.5, 1.0], [0.0, 0.5, 0.9]).unwrap(),
+            // The first is cut off at 0, the second is about to be.
+            ConductorFresnel::f82_tint([0.0, 0.3, 0.31], [0.0, 0.5, 0.51]).unwrap(),
             Metal::Gold.into(),
         ];
         for fresnel in all {
