@@ -9,7 +9,7 @@ use gungraun::{
 use microfacet_guard::{CALLS, Inputs};
 use microfacet_sampler::lobe::{Batch, Bounded, Tabulated};
 use microfacet_sampler::{
-    Bsdf, Conductor, Ellipsoid, Ggx, MicrofacetDistribution, StudentT, Transport,
+    Bsdf, Conductor, Ellipsoid, Family, Ggx, MicrofacetDistribution, StudentT, Transport,
 };
 
 /// The baseline: instructions per call at this commit. A count 1 % above it fails, which is one
@@ -21,6 +21,9 @@ fn at_most(instructions: f64) -> LibraryBenchmarkConfig {
     config.tool(Callgrind::default().hard_limits([(EventKind::Ir, limit)]));
     config
 }
+
+/// A family, the γ of all hits, and their other inputs.
+type Hits = (Family, f32, Inputs<StudentT>);
 
 /// The sum of normals, each of which is computed.
 #[inline(always)]
@@ -48,6 +51,42 @@ fn sample_visible_normal(inputs: Inputs<StudentT>) -> (Vec3, Inputs<StudentT>) {
 fn sample_batch(mut inputs: Inputs<StudentT>) -> Inputs<StudentT> {
     inputs.lobe.sample_batch(&inputs.v, &inputs.u, &mut inputs.m).expect("equal lengths");
     black_box(inputs)
+}
+
+/// σ of a hit.
+fn roughness(u: &[f32; 2]) -> [f32; 2] {
+    black_box([0.2 + u[0], 0.3])
+}
+
+#[library_benchmark]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(0.0))]
+#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(0.0))]
+fn sample_with_roughness(inputs: Inputs<StudentT>) -> (Vec3, Inputs<StudentT>) {
+    let calls = inputs.v.iter().zip(&inputs.u);
+    let one = |(v, u): (&Vec3, &[f32; 2])| {
+        inputs.lobe.with_roughness(roughness(u)).sample_visible_normal(*v, *u)
+    };
+    (sum(calls.map(one)), inputs)
+}
+
+#[library_benchmark]
+#[bench::common(args = (2.5), setup = microfacet_guard::family, config = at_most(0.0))]
+#[bench::heavy(args = (1.6), setup = microfacet_guard::family, config = at_most(0.0))]
+fn sample_of_family((family, gamma, inputs): Hits) -> (Vec3, Hits) {
+    let calls = inputs.v.iter().zip(&inputs.u);
+    let one = |(v, u): (&Vec3, &[f32; 2])| {
+        family.at(roughness(u), black_box(gamma)).sample_visible_normal(*v, *u)
+    };
+    (sum(calls.map(one)), (family, gamma, inputs))
+}
+
+#[library_benchmark]
+#[bench::common(args = (2.5), setup = microfacet_guard::family, config = at_most(0.0))]
+fn g1_of_family((family, gamma, inputs): Hits) -> (f32, Hits) {
+    let calls = inputs.v.iter().zip(&inputs.u);
+    let one =
+        |(v, u): (&Vec3, &[f32; 2])| black_box(family.at(roughness(u), black_box(gamma)).g1(*v));
+    (black_box(calls.map(one).sum()), (family, gamma, inputs))
 }
 
 #[library_benchmark]
@@ -177,6 +216,9 @@ library_benchmark_group!(
     benchmarks = [
         sample_visible_normal,
         sample_batch,
+        sample_with_roughness,
+        sample_of_family,
+        g1_of_family,
         g1,
         g1_batch,
         d,

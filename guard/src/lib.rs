@@ -4,8 +4,8 @@ use glam::Vec3;
 
 use microfacet_sampler::lobe::Bounded;
 use microfacet_sampler::{
-    BsdfSettings, Conductor, ConductorFresnel, Ellipsoid, MicrofacetDistribution, Skew, StudentT,
-    Tables,
+    BsdfSettings, Conductor, ConductorFresnel, Ellipsoid, Family, MicrofacetDistribution, Skew,
+    StudentT, Tables,
 };
 
 /// Calls of each function; a count divided by it is instructions per call.
@@ -54,6 +54,12 @@ impl Inputs<Ellipsoid> {
         });
         Self { lobe, v: v.collect(), u, m, g1 }
     }
+}
+
+/// The family of the default set, γ, and the inputs of [`Inputs::new`].
+pub fn family(gamma: f64) -> (Family, f32, Inputs<StudentT>) {
+    let family = Tables::embedded().family().expect("the default set has ranges");
+    (family, gamma as f32, Inputs::new(gamma))
 }
 
 /// A conductor with the lobe of [`Inputs::new`] and Schlick's reflectance, and those inputs.

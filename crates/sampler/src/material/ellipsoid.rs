@@ -144,7 +144,8 @@ impl EllipsoidRef<'_> {
     /// 1/(area of the microsurface seen along v), for views above and below the lobe's horizon.
     #[inline(always)]
     fn inverse_area(&self, w: Vec3, at: &Stretched) -> f32 {
-        if w.z >= 0.0 { self.slices.inverse_area(at) } else { self.inverse_area_below(w, at) }
+        let Self { slices, below, .. } = *self;
+        if w.z >= 0.0 { slices.inverse_area(at) } else { inverse_area_below(slices, below, w, at) }
     }
 
     /// G2(v, l)·area/(v·n) from (v·n)/area, which is above 1 where G1(v) is clamped.
@@ -152,13 +153,6 @@ impl EllipsoidRef<'_> {
     fn weight(&self, unclamped: f32, l: Vec3, masking: Masking) -> f32 {
         // The closed form of G2/min(1, unclamped): both may be too small for their quotient.
         masking.g2_over_g1(unclamped.min(1.0), self.g1(l)) / unclamped.max(1.0)
-    }
-
-    #[cold]
-    fn inverse_area_below(&self, w: Vec3, at: &Stretched) -> f32 {
-        let area = at.rho * SlopeBelowHorizon::new(self.slices, at.rho, -w.z).excess(self.below);
-        // Finite, since a density of 0 times ∞ would be NaN.
-        if area > 0.0 { saturated(1.0 / area) } else { f32::MAX }
     }
 
     /// The lobe's [common case](draw) between U and Uᵀ; `None` elsewhere, and
@@ -222,6 +216,13 @@ impl EllipsoidRef<'_> {
     fn sample_below(&self, w: Vec3, view: &Stretched, u: [f32; 2]) -> Slope {
         SlopeBelowHorizon::new(self.slices, view.rho, -w.z).sample(u[0], &mut Numbers::new(u))
     }
+}
+
+#[cold]
+fn inverse_area_below(slices: &Slices, below: &ExcessShare, w: Vec3, at: &Stretched) -> f32 {
+    let area = at.rho * SlopeBelowHorizon::new(slices, at.rho, -w.z).excess(below);
+    // Finite, since a density of 0 times ∞ would be NaN.
+    if area > 0.0 { saturated(1.0 / area) } else { f32::MAX }
 }
 
 impl MicrofacetDistribution for EllipsoidRef<'_> {

@@ -41,7 +41,7 @@ use crate::vector::vec3;
 ///     let lobe = family.at(sigma, gamma); // at each hit
 ///     let v = [0.6, 0.0, 0.8];
 ///     let m = lobe.sample_visible_normal(v, [0.3, 0.7]);
-/// #   assert!(m[2] > 0.0 && lobe.g1(v) < 1.0);
+/// #   assert!(m[2] > 0.0 && lobe.g1(v) <= 1.0);
 /// }
 /// # }
 /// # Ok::<(), microfacet_sampler::MaterialError>(())

@@ -13,7 +13,7 @@ use microfacet_tables::axis::hermite::{Cell, Node};
 use microfacet_tables::axis::lagrange;
 use wide::f32x4;
 
-use super::lanes::pairs;
+use super::lanes::{pairs, swap_halves};
 
 /// The nodes of a window.
 const FOUR: usize = 4;
@@ -34,6 +34,7 @@ pub(super) struct Windows<const N: usize> {
     /// The cell at the middle of each slot. A slot that holds the end of a cell reads one of the
     /// two up to half a slot outside; there their polynomials still agree to rounding.
     slots: Vec<u16>,
+    last: u16,
     cells: Vec<Between<N>>,
 }
 
@@ -79,6 +80,7 @@ impl<const N: usize> Windows<N> {
             first: (S_END - low) as f32,
             scale: (1.0 / slot) as f32,
             slots: (0..SLOTS).map(of_slot).collect(),
+            last: (ends.len() - 2) as u16,
             cells: ends.windows(2).map(cell).collect(),
         }
     }
@@ -86,10 +88,10 @@ impl<const N: usize> Windows<N> {
     /// The windows at r = 2 − s.
     #[inline(always)]
     pub(super) fn at(&self, r: f32) -> [Window; N] {
-        // Nothing here can panic, so that a window which no lookup uses costs nothing. The cast
-        // saturates, and takes NaN to 0.
-        let slot = ((self.first - r) * self.scale) as usize;
-        let cell = self.slots.get(slot.min(SLOTS - 1)).copied().unwrap_or(0);
+        // Nothing here can panic, so that a window which no lookup uses costs nothing.
+        let slot = f32x4::splat((self.first - r) * self.scale).fast_trunc_int().to_array()[0];
+        // The end of the range is no slot, nor is NaN.
+        let cell = self.slots.get(slot as u32 as usize).copied().unwrap_or(self.last);
         let Some(cell) = self.cells.get(usize::from(cell)) else {
             return [Window { start: 0, weights: NONE }; N];
         };
@@ -155,8 +157,21 @@ impl<T: Copy + Default> Planes<T> {
     /// The values of a window at a place; `None` where there is no such place.
     #[inline(always)]
     fn at(&self, window: Window, place: usize) -> Option<&[T; FOUR]> {
-        let start = place.wrapping_mul(self.shapes).wrapping_add(window.start as usize);
-        self.values.get(start..)?.first_chunk()
+        let start = self.start(window, place);
+        self.values.get(start..start.wrapping_add(FOUR))?.first_chunk()
+    }
+
+    /// The values of a window at a place and the next, by one test.
+    #[inline(always)]
+    fn two(&self, window: Window, place: usize) -> Option<[&[T; FOUR]; 2]> {
+        let start = self.start(window, place);
+        let both = self.values.get(start..start.wrapping_add(self.shapes + FOUR))?;
+        Some([both.first_chunk()?, both.last_chunk()?])
+    }
+
+    #[inline(always)]
+    fn start(&self, window: Window, place: usize) -> usize {
+        place.wrapping_mul(self.shapes).wrapping_add(window.start as usize)
     }
 
     #[inline(always)]
@@ -176,22 +191,17 @@ impl Planes<Node> {
     /// (value, slope) at a place and the next.
     #[inline(always)]
     pub(super) fn pair(&self, window: Window, place: usize) -> f32x4 {
-        let (Some(a), Some(b)) = (self.at(window, place), self.at(window, place + 1)) else {
-            return NONE;
-        };
-        combined([a, b].map(|nodes| window.halves(nodes)))
+        let Some(nodes) = self.two(window, place) else { return NONE };
+        combined(nodes.map(|nodes| window.halves(nodes)))
     }
 
     /// [`pair`](Self::pair), linear in w between a place and another.
     #[inline(always)]
     pub(super) fn between(&self, window: Window, low: usize, high: usize, w: f32) -> f32x4 {
-        let (Some(a), Some(b)) = (self.at(window, low), self.at(window, low + 1)) else {
+        let (Some(low), Some(high)) = (self.two(window, low), self.two(window, high)) else {
             return NONE;
         };
-        let (Some(c), Some(d)) = (self.at(window, high), self.at(window, high + 1)) else {
-            return NONE;
-        };
-        let [a, b, c, d] = [a, b, c, d].map(|nodes| window.halves(nodes));
+        let [[a, b], [c, d]] = [low, high].map(|nodes| nodes.map(|nodes| window.halves(nodes)));
         let w = f32x4::splat(w);
         combined([a + w * (c - a), b + w * (d - b)])
     }
@@ -223,8 +233,7 @@ impl Window {
 /// The sums of the halves of each.
 #[inline(always)]
 fn combined([a, b]: [f32x4; 2]) -> f32x4 {
-    let ([.., a2, a3], [.., b2, b3]) = (a.to_array(), b.to_array());
-    pairs(a, b) + f32x4::new([a2, a3, b2, b3])
+    pairs(a, b) + pairs(swap_halves(a), swap_halves(b))
 }
 
 #[cfg(test)]
