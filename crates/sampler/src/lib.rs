@@ -55,17 +55,17 @@
 //! Where textures give σ, or σ and γ, a material is made at every hit, and nothing is allocated:
 //!
 //! ```
-//! use microfacet_sampler::{Bsdf, BsdfSettings, Compensation, Conductor, ConductorFresnel};
-//! use microfacet_sampler::{Masking, Metal, Tables, Transport};
+//! use microfacet_sampler::{Bsdf, Compensation, Conductor, ConductorFresnel, Masking, Metal};
+//! use microfacet_sampler::{Tables, Transport};
 //!
-//! fn main() -> Result<(), microfacet_sampler::BindError> {
-//!     let tables = Tables::embedded();
-//!     let (family, gold) = (tables.family()?, ConductorFresnel::from(Metal::Gold)); // once
-//!     let albedo = tables.family_albedo(Masking::HeightCorrelated)?;
+//! fn main() -> Result<(), microfacet_sampler::MaterialError> {
+//!     let (tables, masking) = (Tables::embedded(), Masking::HeightCorrelated);
+//!     let (family, albedo) = (tables.family()?, tables.family_albedo(masking)?); // once
+//!     let gold = ConductorFresnel::from(Metal::Gold);
 //!
 //!     let (sigma, gamma) = (0.3, 2.5); // of textures, at a hit
-//!     let single = Conductor::new(family.at(sigma, gamma), gold, BsdfSettings::new())?;
-//!     let hit = single.compensated_at(albedo.at(sigma, gamma), Compensation::KullaConty);
+//!     let hit = Conductor::at_hit(family.at(sigma, gamma), gold, masking)
+//!         .compensated_at(albedo.at(sigma, gamma), Compensation::KullaConty);
 //!     let path = hit.sample([0.6, 0.0, 0.8], 0.2, [0.3, 0.7], Transport::Radiance);
 //!     assert!(path.is_some());
 //!     Ok(())
@@ -95,7 +95,7 @@
 //! | lose fewer samples below the horizon | [`StudentT::bounded`] |
 //! | compensate multiple scattering yourself | [`Tables::albedo`], [`albedo::Albedo`] |
 //! | take σ from a texture | [`StudentT::with_roughness`], also of a bounded lobe; [`Ellipsoid::with_skew`] |
-//! | take σ and γ from textures | [`Tables::family`]; [`Tables::family_albedo`], [`Conductor::compensated_at`] |
+//! | take σ and γ from textures | [`Tables::family`], [`Tables::family_albedo`]; [`Conductor::at_hit`] |
 //! | write a set, or read one table | the crate [`microfacet_tables`] |
 //! | write the lookups in another language | [`port`] |
 //!

@@ -51,6 +51,34 @@ impl<L: Reflecting + Tabulated, const N: usize> Conductor<L, N> {
     }
 }
 
+impl<L: Reflecting, const N: usize> Conductor<L, N, AlbedoAt<'_>> {
+    /// A conductor of one bounce, made at a hit in a few operations: what [`new`](Conductor::new)
+    /// makes without a compensation, for lobes whose σ, or σ and γ, come from textures.
+    ///
+    /// [`compensated_at`](Conductor::compensated_at) adds the light of further bounces.
+    ///
+    /// ```
+    /// # #[cfg(feature = "embedded")] {
+    /// use microfacet_sampler::{Compensation, Conductor, ConductorFresnel, Masking, Metal, Tables};
+    ///
+    /// let (tables, masking) = (Tables::embedded(), Masking::HeightCorrelated);
+    /// let (family, albedo) = (tables.family()?, tables.family_albedo(masking)?); // once
+    /// let gold = ConductorFresnel::from(Metal::Gold);
+    /// for (sigma, gamma) in [(0.3, 2.5), (0.31, 2.4)] {
+    ///     let hit = Conductor::at_hit(family.at(sigma, gamma), gold, masking);
+    ///     let hit = hit.compensated_at(albedo.at(sigma, gamma), Compensation::KullaConty);
+    /// }
+    /// # }
+    /// # Ok::<(), microfacet_sampler::BindError>(())
+    /// ```
+    #[inline(always)]
+    #[must_use]
+    pub fn at_hit(lobe: L, fresnel: ConductorFresnel<N>, masking: Masking) -> Self {
+        let smooth = lobe.is_effectively_smooth();
+        Self { lobe, fresnel, masking, smooth, returned: None }
+    }
+}
+
 impl<L: Reflecting, const N: usize> Conductor<L, N> {
     /// This conductor with a compensation by a given albedo, which must be of the same lobe; its
     /// form of masking becomes that of the conductor.
@@ -58,25 +86,13 @@ impl<L: Reflecting, const N: usize> Conductor<L, N> {
     pub fn compensated_by(self, albedo: Albedo, compensation: Compensation) -> Self {
         self.with(albedo, compensation, Density::of_albedo)
     }
+}
 
+impl<L: Reflecting, const N: usize, B> Conductor<L, N, B> {
     /// This conductor with a compensation by the albedo at a hit, which must be that of the lobe's
-    /// σ and γ; its form of masking becomes that of the conductor.
-    ///
-    /// Nothing is tabulated: it takes some lookups, and the average of the reflectance, which is in
-    /// closed form for Schlick's and for a mirror.
-    ///
-    /// ```
-    /// # #[cfg(feature = "embedded")] {
-    /// use microfacet_sampler::{BsdfSettings, Compensation, Conductor, Metal, Tables};
-    ///
-    /// let tables = Tables::embedded();
-    /// let family = tables.family_albedo(Default::default())?; // once
-    /// let lobe = tables.student_t(0.3, 2.5)?;
-    /// let gold = Conductor::new(lobe, Metal::Gold, BsdfSettings::new())?;
-    /// let gold = gold.compensated_at(family.at(0.3, 2.5), Compensation::KullaConty);
-    /// # }
-    /// # Ok::<(), microfacet_sampler::BindError>(())
-    /// ```
+    /// σ and γ; its form of masking becomes that of the conductor. Nothing is tabulated, and it
+    /// takes some lookups.
+    #[inline]
     #[must_use]
     pub fn compensated_at<'a>(
         self,
@@ -86,6 +102,7 @@ impl<L: Reflecting, const N: usize> Conductor<L, N> {
         self.with(albedo, compensation, Density::at)
     }
 
+    #[inline]
     fn with<A: DirectionalAlbedo>(
         self,
         albedo: A,

@@ -85,7 +85,7 @@ impl<L: Tabulated> Dielectric<L> {
     pub fn new(lobe: L, eta: f64, settings: BsdfSettings<'_>) -> Result<Self, BindError> {
         let (index, eta) = (eta, checked(eta)?);
         let smooth = lobe.is_effectively_smooth() || eta == 1.0;
-        let has_pole = lobe.key().has_pole();
+        let has_pole = lobe.has_pole();
         let masking = settings.masking;
         let single = Self { lobe, index, eta, masking, smooth, has_pole, returned: None };
         match settings.compensation().filter(|_| !smooth) {

@@ -403,6 +403,11 @@ impl Tabulated for BoundedRef<'_> {
         self.lobe.key()
     }
 
+    #[inline]
+    fn has_pole(&self) -> bool {
+        self.lobe.has_pole()
+    }
+
     fn bytes(&self) -> usize {
         self.lobe.bytes() + size_of_val(self.limits)
     }

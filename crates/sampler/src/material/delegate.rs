@@ -177,6 +177,11 @@ macro_rules! lobe_by_reference {
                 self.by_ref().key()
             }
 
+            #[inline]
+            fn has_pole(&self) -> bool {
+                self.by_ref().has_pole()
+            }
+
             fn bytes(&self) -> usize {
                 self.by_ref().bytes()
             }

@@ -336,6 +336,11 @@ impl Tabulated for EllipsoidRef<'_> {
         LobeKey::Tilted { matrix: self.matrix.entries(), gamma: self.gamma() }
     }
 
+    #[inline]
+    fn has_pole(&self) -> bool {
+        self.gamma() < 2.0
+    }
+
     fn bytes(&self) -> usize {
         self.slices.bytes()
     }

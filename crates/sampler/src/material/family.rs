@@ -181,6 +181,11 @@ impl Tabulated for FamilyLobe<'_> {
         LobeKey::of_family(self.sigma(), f64::from(self.gamma))
     }
 
+    #[inline]
+    fn has_pole(&self) -> bool {
+        self.gamma < 2.0
+    }
+
     fn bytes(&self) -> usize {
         self.surface.shape.bytes()
     }

@@ -121,6 +121,11 @@ impl Tabulated for Lobe {
         each!(self, lobe => lobe.key())
     }
 
+    #[inline]
+    fn has_pole(&self) -> bool {
+        each!(self, lobe => lobe.has_pole())
+    }
+
     fn bytes(&self) -> usize {
         each!(self, lobe => lobe.bytes())
     }

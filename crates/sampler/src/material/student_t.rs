@@ -239,6 +239,11 @@ impl Tabulated for StudentTRef<'_> {
         LobeKey::of_family(self.sigma(), self.gamma())
     }
 
+    #[inline]
+    fn has_pole(&self) -> bool {
+        self.gamma() < 2.0
+    }
+
     fn bytes(&self) -> usize {
         self.surface.shape.bytes()
     }
@@ -252,6 +257,11 @@ impl Tabulated for StudentT {
 
     fn key(&self) -> LobeKey {
         self.by_ref().key()
+    }
+
+    #[inline]
+    fn has_pole(&self) -> bool {
+        self.by_ref().has_pole()
     }
 
     fn bytes(&self) -> usize {

@@ -21,11 +21,17 @@ pub trait Tabulated: MicrofacetDistribution {
         self.visible_normal_pdf(v, m)
     }
 
-    /// The key of the lobe in tables of albedos. A BSDF also learns from it whether D has a pole on
-    /// the horizon.
+    /// The key of the lobe in tables of albedos.
     #[must_use]
     fn key(&self) -> LobeKey {
         LobeKey::Unknown
+    }
+
+    /// Whether D grows without limit towards the horizon, as that of γ < 2 does: rough glass then
+    /// treats facets next to it apart.
+    #[must_use]
+    fn has_pole(&self) -> bool {
+        self.key().has_pole()
     }
 
     /// Bytes of table that lookups touch.
