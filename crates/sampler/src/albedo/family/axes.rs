@@ -128,8 +128,8 @@ fn clamp(x: f32, [low, high]: [f32; 2]) -> f32 {
 /// over the hemisphere.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct View {
-    /// k = κσ, and 1.
-    scale: f32x4,
+    /// κσ.
+    knee: f32,
 }
 
 impl View {
@@ -140,13 +140,12 @@ impl View {
     #[inline(always)]
     pub(super) fn new(sigma: f32, q: f32) -> Self {
         // Not 0 for a mirror, for which x would be 0/0 at the horizon.
-        let knee = (6.0 + q) * sigma + 1e-20;
-        Self { scale: f32x4::from([knee, 1.0, 0.0, 0.0]) }
+        Self { knee: (6.0 + q) * sigma + 1e-20 }
     }
 
     /// About the cosine, over sin θ, at which half of the light is lost: σ where tails are short.
     pub(super) fn reach(self) -> f32 {
-        self.scale.to_array()[0] / 6.0
+        self.knee / 6.0
     }
 
     /// The cell of cos θ ∈ [0, 1], which is also the first of four coefficients, and their weights.
@@ -164,14 +163,16 @@ impl View {
         const SHARES: [f32; 2] =
             [View::SHARE * View::CELLS as f32, (1.0 - View::SHARE) * View::CELLS as f32];
         let sin = sqrt((1.0 - cos) * (1.0 + cos));
-        let sum = f32x4::from([cos, 1.0, 1.0, 1.0]) + self.scale * sin;
+        // Of lanes that were written one by one, the load of all would wait for the writes.
+        let [x, h] = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0]].map(f32x4::from);
+        let sum = f32x4::from([cos, 1.0, 1.0, 1.0]) + (x * self.knee + h) * sin;
         let [x, h, ..] = (f32x4::splat(cos) / sum).sqrt().sqrt().to_array();
         SHARES[0] * x + SHARES[1] * h
     }
 
     /// h^¼ of the nodes, ascending from 0 to 1.
     pub(super) fn nodes(self) -> [f64; Self::CELLS + 1] {
-        let (knee, share) = (f64::from(self.scale.to_array()[0]), f64::from(Self::SHARE));
+        let (knee, share) = (f64::from(self.knee), f64::from(Self::SHARE));
         let coordinate = |root: f64| {
             let h = (root * root) * (root * root);
             let x = root * sqrt64(sqrt64(2.0 / (2.0 * h + knee * (1.0 - h * h))));
