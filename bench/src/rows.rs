@@ -81,6 +81,13 @@ impl Row {
     }
 }
 
+/// Tables of more bytes are those of all γ, too many for the first cache.
+const LARGE: usize = 1 << 18;
+
+fn bytes_of<F>(rivals: &[Rival<F>]) -> Vec<usize> {
+    rivals.iter().map(|rival| rival.bytes).collect()
+}
+
 /// Times and judges all rivals.
 pub(crate) fn rows(slices: &Slices, settings: &Settings) -> Vec<Row> {
     let inputs = Inputs::new(settings.seed, settings.calls);
@@ -92,6 +99,10 @@ pub(crate) fn rows(slices: &Slices, settings: &Settings) -> Vec<Row> {
     let lights = Inputs::new(settings.seed.wrapping_add(1), settings.calls);
     let surfaces = Surfaces::new(slices, &inputs, &lights, settings);
     let per_hit = per_hit(slices, &surfaces);
+    let mut bytes = bytes_of(&samplers);
+    bytes.extend([bytes_of(&maskings), bytes_of(&densities)].concat());
+    bytes.extend([bytes_of(&conductors), bytes_of(&evaluations), bytes_of(&per_hit)].concat());
+    let large: Vec<usize> = (0..bytes.len()).filter(|&i| bytes[i] > LARGE).collect();
     let mut runs: Vec<clock::Calls> =
         samplers.iter().map(|sampler| normals(&sampler.run.draw, &inputs)).collect();
     runs.extend(maskings.iter().map(|masking| values(&masking.run, &inputs)));
@@ -99,7 +110,7 @@ pub(crate) fn rows(slices: &Slices, settings: &Settings) -> Vec<Row> {
     let given = conductors.iter_mut().chain(&mut evaluations);
     runs.extend(given.map(|rival| -> clock::Calls { Box::new(&mut rival.run) }));
     runs.extend(per_hit.iter().map(|rival| rival.run.calls()));
-    let times = clock::medians(&mut runs, settings.rounds, settings.calls);
+    let times = clock::medians_warmed(&mut runs, &large, settings.rounds, settings.calls);
     drop(runs);
     let mut times = times.into_iter();
     let mut next = || times.next().expect("one of each run");
