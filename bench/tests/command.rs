@@ -61,7 +61,8 @@ fn every_rival_is_measured_and_written() {
     };
     assert!(rows.iter().all(|row| number(row, "ns") > 0.0));
     assert!(number(row("normal", "table, default"), "error_max") < 1e-4);
-    assert!(number(row("normal", "table, default"), "bytes") < 32.0 * 1024.0);
+    // 3 KiB of it are powers for D.
+    assert!(number(row("normal", "table, default"), "bytes") < 34.0 * 1024.0);
     assert!(number(row("normal", "table, high"), "error_max") < 1e-5);
     assert!(number(row("g1", "table, default"), "error_max") < 1e-6);
     assert!(number(row("g1", "rational approximation (eq. 22-23)"), "error_max") > 1e-3);
