@@ -15,6 +15,20 @@ const BATCH_NS: f64 = 1e5;
 
 /// Nanoseconds a call of each rival, the median over `rounds` batches of inputs from `count`.
 pub(crate) fn medians(rivals: &mut [Calls], rounds: usize, count: usize) -> Vec<f64> {
+    medians_warmed(rivals, &[], rounds, count)
+}
+
+/// The same, where the rivals of some indices have large tables.
+///
+/// A quarter of a batch brings small tables back into the caches, and not those of a megabyte, of
+/// which a call reads a part by γ and view: they take all inputs. Without that a batch would wait
+/// for memory that a renderer, after its first milliseconds, has in the caches.
+pub(crate) fn medians_warmed(
+    rivals: &mut [Calls],
+    large: &[usize],
+    rounds: usize,
+    count: usize,
+) -> Vec<f64> {
     let time = |rival: &mut Calls, range: Range<usize>| {
         let calls = range.len() as f64;
         let start = Instant::now();
@@ -32,11 +46,12 @@ pub(crate) fn medians(rivals: &mut [Calls], rounds: usize, count: usize) -> Vec<
         .collect();
     let mut times = vec![Vec::with_capacity(rounds); rivals.len()];
     for round in 0..rounds {
-        for ((rival, &calls), times) in rivals.iter_mut().zip(&batches).zip(&mut times) {
+        let each = rivals.iter_mut().zip(&batches).zip(&mut times).enumerate();
+        for (i, ((rival, &calls), times)) in each {
             // Other inputs each time: a branch predictor would learn a short batch.
             let start = round * calls % (count - calls + 1);
             // Brings its code and tables back into the caches.
-            rival(0..(calls / 4).max(1));
+            rival(0..if large.contains(&i) { count } else { (calls / 4).max(1) });
             times.push(time(rival, start..start + calls));
         }
     }

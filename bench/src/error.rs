@@ -34,7 +34,12 @@ impl Error {
 
 /// The material of a shape.
 pub(crate) fn truth(gamma: f64) -> StudentT {
-    StudentT::new(SIGMA, gamma).expect("sigma is a constant, and so are the shapes")
+    material(SIGMA, gamma)
+}
+
+/// The material of a roughness and a shape.
+pub(crate) fn material(sigma: f64, gamma: f64) -> StudentT {
+    StudentT::new(sigma, gamma).expect("both are constants, or of a texture within the family")
 }
 
 /// The error of a sampler: how far the CDFs along and across the plane of incidence are from their
@@ -47,24 +52,28 @@ pub(crate) fn sampler_error(rival: &Rival<Sampler>, inputs: &Inputs) -> Option<E
     let truth = truth(rival.gamma);
     let mut normals = vec![Vec3::ZERO; inputs.views.len()];
     (sampler.draw)(&inputs.views, &inputs.numbers, &mut normals);
-    let one = |((v, u), m): ((&Vec3, &[f32; 2]), &Vec3)| {
-        let (v, u, m) = (v.as_dvec3(), u.map(f64::from), m.as_dvec3());
-        let want = match sampler.check {
-            Check::Falling => [1.0 - u[0], u[1]],
-            Check::Formula(exactly) => cdfs(&truth, v, exactly(SIGMA, v, u)),
-            _ => u,
-        };
-        let got = cdfs(&truth, v, m);
-        (got[0] - want[0]).abs().max((got[1] - want[1]).abs())
-    };
+    let one =
+        |((v, u), m): ((&Vec3, &[f32; 2]), &Vec3)| cdf_error(&truth, sampler.check, *v, *u, *m);
     Some(Error::of(inputs.views.iter().zip(&inputs.numbers).zip(&normals).map(one)))
 }
 
-/// The CDFs along and across the plane of incidence at a normal.
+/// The error of one normal of a sampler whose random numbers correspond to CDFs.
+pub(crate) fn cdf_error(truth: &StudentT, check: Check, v: Vec3, u: [f32; 2], m: Vec3) -> f64 {
+    let (v, u, m) = (v.as_dvec3(), u.map(f64::from), m.as_dvec3());
+    let want = match check {
+        Check::Falling => [1.0 - u[0], u[1]],
+        Check::Formula(exactly) => cdfs(truth, v, exactly(truth.sigma_x(), v, u)),
+        _ => u,
+    };
+    let got = cdfs(truth, v, m);
+    (got[0] - want[0]).abs().max((got[1] - want[1]).abs())
+}
+
+/// The CDFs along and across the plane of incidence at a normal of a round lobe.
 fn cdfs(truth: &StudentT, v: DVec3, m: DVec3) -> [f64; 2] {
     let (view, [cos, sin]) = truth.unit_view(v);
     let shape = truth.shape();
-    let (a, b) = (m.x / SIGMA, m.y / SIGMA);
+    let (a, b) = (m.x / truth.sigma_x(), m.y / truth.sigma_y());
     let (x, y) = (a * cos + b * sin, b * cos - a * sin);
     let t = y / (m.z * m.z + shape.s() * x * x).sqrt();
     let signed = |x: f64| SignedSlope {
@@ -77,18 +86,26 @@ fn cdfs(truth: &StudentT, v: DVec3, m: DVec3) -> [f64; 2] {
 /// The absolute error of G1.
 pub(crate) fn masking_error(rival: &Rival<Evaluate>, inputs: &Inputs) -> Error {
     let truth = truth(rival.gamma);
-    let error = |(w, g1): (&Vec3, f32)| (f64::from(g1) - truth.g1(w.as_dvec3())).abs();
+    let error = |(w, g1): (&Vec3, f32)| g1_error(&truth, *w, g1);
     Error::of(inputs.views.iter().zip(evaluated(rival, inputs)).map(error))
+}
+
+/// The absolute error of one G1.
+pub(crate) fn g1_error(truth: &StudentT, w: Vec3, g1: f32) -> f64 {
+    (f64::from(g1) - truth.g1(w.as_dvec3())).abs()
 }
 
 /// The relative error of D.
 pub(crate) fn density_error(rival: &Rival<Evaluate>, normals: &Inputs) -> Error {
     let truth = truth(rival.gamma);
-    Error::of(normals.views.iter().zip(evaluated(rival, normals)).filter_map(|(m, d)| {
-        let exact = truth.d(m.as_dvec3());
-        // Smaller values are subnormal in single precision.
-        (exact > 1e-37).then(|| (f64::from(d) / exact - 1.0).abs())
-    }))
+    let error = |(m, d): (&Vec3, f32)| d_error(&truth, *m, d);
+    Error::of(normals.views.iter().zip(evaluated(rival, normals)).filter_map(error))
+}
+
+/// The relative error of one D; `None` where it is subnormal in single precision.
+pub(crate) fn d_error(truth: &StudentT, m: Vec3, d: f32) -> Option<f64> {
+    let exact = truth.d(m.as_dvec3());
+    (exact > 1e-37).then(|| (f64::from(d) / exact - 1.0).abs())
 }
 
 fn evaluated(rival: &Rival<Evaluate>, inputs: &Inputs) -> Vec<f32> {

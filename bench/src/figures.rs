@@ -15,7 +15,7 @@ use crate::rows::{Quantity, Row};
 use crate::sampler::{BATCH, CAPS, INVERSION, INVERSION_SUM};
 use crate::settings::{GAMMA, SIGMA, Settings};
 use crate::tables::{Slices, TABLE};
-use crate::{clock, conductors, values};
+use crate::{clock, conductors, per_hit, values};
 
 /// One figure with its limit and its goal; smaller is better.
 #[derive(Clone, Debug, Serialize)]
@@ -71,12 +71,20 @@ pub(crate) fn figures(
     let ratio = Figure::ratio;
     let (of_caps, sums) = ("sample, table / GGX spherical caps", INVERSION_SUM);
     let g1 = over(Quantity::G1, TABLE, values::GGX);
-    vec![
-        ratio(of_caps, 1.3, 1.0, normals(TABLE, CAPS)),
+    let d = |name, must, aim, rival| ratio(name, must, aim, over(Quantity::D, values::BITS, rival));
+    let [by_hand, table] = conductors::SCHLICK;
+    let eval_pdf = over(Quantity::Evaluation, table, by_hand);
+    let at_hits = parameters_per_hit(over);
+    let own = vec![
+        d("D / GGX closed form", 8.0, 4.0, values::GGX),
+        d("D / its logarithm form", 0.5, 0.4, values::LOGARITHM),
+        // What careful code can reach, see docs/benchmark.md.
+        ratio(of_caps, 2.2, 1.0, normals(TABLE, CAPS)),
         ratio("sample_batch, table / GGX spherical caps", 0.6, 0.35, normals(BATCH, CAPS)),
         ratio("g1, table / GGX closed form", 2.0, 1.2, g1),
         conductor("conductor, Schlick, table / GGX by hand", conductors::SCHLICK),
         conductor("conductor, exact Fresnel, table / GGX by hand", conductors::EXACT),
+        ratio("eval_pdf, Schlick, table / GGX by hand", 2.0, 1.5, eval_pdf),
         ratio("sample, table / inversion, any gamma", 0.05, 0.025, normals(TABLE, INVERSION)),
         ratio("sample, table / inversion, integer gamma only", 0.05, 0.025, normals(TABLE, sums)),
         ratio("CDF error, default tables, gamma >= 1.8", 1e-4, 2e-5, Some(cdf_error)),
@@ -88,6 +96,23 @@ pub(crate) fn figures(
             unit: "ms",
             ..ratio("the embedded set, ready", 1.0, 1.0, Some(1e-6 * embedded_ns))
         },
+    ];
+    at_hits.into_iter().chain(own).collect()
+}
+
+/// What it costs that parameters come from textures, from the quotient of the times of two rows.
+fn parameters_per_hit(
+    over: impl Fn(Quantity, &'static str, &'static str) -> Option<f64>,
+) -> Vec<Figure> {
+    let figure =
+        |name, must, aim, a, b| Figure::ratio(name, must, aim, over(Quantity::PerHit, a, b));
+    let bound = per_hit::BOUND;
+    vec![
+        figure("sigma per hit / bound sample", 1.3, 1.1, per_hit::OF_SIGMA, bound),
+        figure("gamma per hit / bound sample", 2.2, 2.0, per_hit::SMOOTH, bound),
+        figure("gamma per hit, random / bound sample", 2.4, 2.0, per_hit::RANDOM, bound),
+        figure("gamma < 1.8 per hit / bound sample", 3.2, 2.5, per_hit::PEELED, bound),
+        figure("E per hit / bilinear lookup", 3.0, 2.0, per_hit::ALBEDO, per_hit::LOOKUP),
     ]
 }
 

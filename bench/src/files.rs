@@ -34,7 +34,11 @@ pub(crate) fn csv<T: Serialize>(
     Ok(writer.into_inner()?)
 }
 
-/// A shape: JSON has no infinity.
+/// A shape: JSON has no infinity, and no number stands for one that varies.
 pub(crate) fn shape<S: Serializer>(gamma: &f64, to: S) -> Result<S::Ok, S::Error> {
-    if gamma.is_finite() { to.serialize_f64(*gamma) } else { to.serialize_str("inf") }
+    match gamma {
+        varying if varying.is_nan() => to.serialize_str("varies"),
+        finite if finite.is_finite() => to.serialize_f64(*finite),
+        _ => to.serialize_str("inf"),
+    }
 }

@@ -13,6 +13,7 @@ mod figures;
 mod files;
 mod inputs;
 mod paper;
+mod per_hit;
 mod plot;
 mod rival;
 mod rivals;
@@ -22,6 +23,7 @@ mod settings;
 mod sweep;
 mod tables;
 mod terminal;
+mod textures;
 mod values;
 
 use std::fmt::Display;

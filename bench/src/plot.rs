@@ -8,13 +8,14 @@ use crate::settings::GAMMA;
 /// Error at which rivals without one, exact in distribution, are drawn.
 const EXACT: f64 = 1e-8;
 
-/// Two panels, visible normals above and G1 below. Filled points are Student-t with γ = [`GAMMA`],
+/// Panels of visible normals, of G1 and of D. Filled points are Student-t with γ = [`GAMMA`],
 /// and the front is theirs; rings are other distributions.
 pub(crate) fn svg(rows: &[Row]) -> String {
     let of = |quantity| rows.iter().filter(|row| row.quantity == quantity).collect::<Vec<_>>();
     let panels = vec![
         panel("Visible normals", "error of the CDFs, max", &of(Quantity::Normal)),
         panel("G1", "error of G1, max", &of(Quantity::G1)),
+        panel("D", "relative error of D, max", &of(Quantity::D)),
     ];
     Figure { panels, columns: 1, panel: [760.0, 470.0] }.drawing().svg()
 }

@@ -10,11 +10,12 @@ use microfacet_tables::Table;
 use crate::clock::Calls;
 use crate::inputs::Inputs;
 use crate::settings::SIGMA;
+use crate::tables::Slices;
 
 /// A rival of one material, of roughness [`SIGMA`].
 pub(crate) struct Rival<F> {
     pub(crate) name: &'static str,
-    /// The shape; ∞ is Beckmann.
+    /// The shape; ∞ is Beckmann, NaN any.
     pub(crate) gamma: f64,
     /// Bytes of table that lookups touch; 0 for closed forms.
     pub(crate) bytes: usize,
@@ -31,10 +32,19 @@ impl<F> Rival<F> {
 
     /// The rival, with the bytes of the tables of a set.
     pub(crate) fn of(self, set: &Tables) -> Self {
-        let lookups = set.tables().iter().filter(|table| !table.kind.is_albedo());
-        let stored = lookups.map(Table::stored_bytes).sum();
-        Self { bytes: lobe(set, self.gamma).bytes(), stored, ..self }
+        Self { bytes: lobe(set, self.gamma).bytes(), stored: stored(set), ..self }
     }
+
+    /// The rival, with the bytes of the tables over all γ that a family reads.
+    pub(crate) fn of_family(self, slices: &Slices) -> Self {
+        Self { bytes: slices.family().bytes(), stored: stored(slices.whole()), ..self }
+    }
+}
+
+/// Bytes of a set's tables of lobes as stored in a file.
+fn stored(set: &Tables) -> usize {
+    let lookups = set.tables().iter().filter(|table| !table.kind.is_albedo());
+    lookups.map(Table::stored_bytes).sum()
 }
 
 /// Normals for views and random numbers, as many as there are views.

@@ -3,10 +3,11 @@
 use serde::Serialize;
 
 use crate::clock;
-use crate::conductors::{Hits, conductors};
+use crate::conductors::{Hits, conductors, evaluations};
 use crate::error::{self, Error};
 use crate::files::shape;
 use crate::inputs::Inputs;
+use crate::per_hit::{Surfaces, per_hit};
 use crate::rival::{Rival, normals, values};
 use crate::sampler::samplers;
 use crate::settings::Settings;
@@ -24,6 +25,11 @@ pub(crate) enum Quantity {
     D,
     /// A conductor: a sampled light and the evaluation of another.
     Conductor,
+    /// A conductor: the evaluation of a given light alone.
+    Evaluation,
+    /// Any of these with parameters of each hit.
+    #[serde(rename = "per hit")]
+    PerHit,
     /// A picture of rough gold.
     Picture,
 }
@@ -33,7 +39,7 @@ pub(crate) enum Quantity {
 pub(crate) struct Row {
     pub(crate) quantity: Quantity,
     pub(crate) name: &'static str,
-    /// Its shape; ∞ is Beckmann.
+    /// Its shape; ∞ is Beckmann, NaN one that varies.
     #[serde(serialize_with = "shape")]
     pub(crate) gamma: f64,
     /// Nanoseconds a call.
@@ -75,6 +81,13 @@ impl Row {
     }
 }
 
+/// Tables of more bytes are those of all γ, too many for the first cache.
+const LARGE: usize = 1 << 18;
+
+fn bytes_of<F>(rivals: &[Rival<F>]) -> Vec<usize> {
+    rivals.iter().map(|rival| rival.bytes).collect()
+}
+
 /// Times and judges all rivals.
 pub(crate) fn rows(slices: &Slices, settings: &Settings) -> Vec<Row> {
     let inputs = Inputs::new(settings.seed, settings.calls);
@@ -82,12 +95,22 @@ pub(crate) fn rows(slices: &Slices, settings: &Settings) -> Vec<Row> {
     let hits = Hits::new(settings.seed, settings.calls);
     let (samplers, maskings) = (samplers(slices, settings.seed), maskings(slices));
     let (densities, mut conductors) = (densities(slices), conductors(slices.default(), &hits));
+    let mut evaluations = evaluations(slices.default(), &hits);
+    let lights = Inputs::new(settings.seed.wrapping_add(1), settings.calls);
+    let surfaces = Surfaces::new(slices, &inputs, &lights, settings);
+    let per_hit = per_hit(slices, &surfaces);
+    let mut bytes = bytes_of(&samplers);
+    bytes.extend([bytes_of(&maskings), bytes_of(&densities)].concat());
+    bytes.extend([bytes_of(&conductors), bytes_of(&evaluations), bytes_of(&per_hit)].concat());
+    let large: Vec<usize> = (0..bytes.len()).filter(|&i| bytes[i] > LARGE).collect();
     let mut runs: Vec<clock::Calls> =
         samplers.iter().map(|sampler| normals(&sampler.run.draw, &inputs)).collect();
     runs.extend(maskings.iter().map(|masking| values(&masking.run, &inputs)));
     runs.extend(densities.iter().map(|density| values(&density.run, &seen)));
-    runs.extend(conductors.iter_mut().map(|rival| -> clock::Calls { Box::new(&mut rival.run) }));
-    let times = clock::medians(&mut runs, settings.rounds, settings.calls);
+    let given = conductors.iter_mut().chain(&mut evaluations);
+    runs.extend(given.map(|rival| -> clock::Calls { Box::new(&mut rival.run) }));
+    runs.extend(per_hit.iter().map(|rival| rival.run.calls()));
+    let times = clock::medians_warmed(&mut runs, &large, settings.rounds, settings.calls);
     drop(runs);
     let mut times = times.into_iter();
     let mut next = || times.next().expect("one of each run");
@@ -112,5 +135,9 @@ pub(crate) fn rows(slices: &Slices, settings: &Settings) -> Vec<Row> {
         all.push(Row::new(Quantity::D, rival, next(), Some(error)));
     }
     all.extend(conductors.iter().map(|rival| Row::new(Quantity::Conductor, rival, next(), None)));
+    all.extend(evaluations.iter().map(|rival| Row::new(Quantity::Evaluation, rival, next(), None)));
+    all.extend(
+        per_hit.iter().map(|rival| Row::new(Quantity::PerHit, rival, next(), rival.run.error())),
+    );
     all
 }

@@ -9,7 +9,7 @@ use microfacet_model::MicrofacetDistribution as _;
 use microfacet_sampler::lobe::{Batch as _, Bounded};
 use microfacet_sampler::{Ggx, MicrofacetDistribution as _};
 
-use crate::inputs::Stream;
+use crate::inputs::{COUNT, Stream};
 use crate::rival::{Draw, Rival, each, in_a_loop, lobe};
 use crate::rivals::beckmann;
 use crate::rivals::bilinear::Bilinear;
@@ -18,6 +18,7 @@ use crate::rivals::lobe::Lobe;
 use crate::rivals::stream::Drawer;
 use crate::settings::{GAMMA, SIGMA};
 use crate::tables::{HIGH, Slices};
+use crate::textures::Texture;
 
 /// The normal of a view at two random numbers, in double precision.
 pub(crate) type Exactly = fn(f64, DVec3, [f64; 2]) -> DVec3;
@@ -95,20 +96,31 @@ pub(crate) const BATCH: &str = "table, default, batch";
 pub(crate) const INVERSION: &str = "inversion of the CDF, any gamma";
 pub(crate) const INVERSION_SUM: &str = "inversion of the CDF, integer gamma";
 
+const FAMILY: &str = "table, family, sigma and gamma per call";
+
+/// The numbers of the closed form are the listing's in the other order, height first.
+pub(crate) fn closed(sigma: f64, v: DVec3, [height, azimuth]: [f64; 2]) -> DVec3 {
+    double::caps(sigma, v, [azimuth, height])
+}
+
+/// The family at the σ and γ of all rivals, which it is told at every call.
+fn of_family(slices: &Slices) -> Draw<'_> {
+    let (family, texture) = (slices.family(), Texture::constant(COUNT));
+    Box::new(move |v, u, m| {
+        for ((([sigma, gamma], v), u), m) in texture.each().zip(v).zip(u).zip(m) {
+            *m = black_box(family.at(sigma, gamma).sample_visible_normal(*v, *u)).into();
+        }
+    })
+}
+
 /// All samplers, over the given tables.
-pub(crate) fn samplers(slices: &Slices, seed: u64) -> Vec<Rival<Sampler<'static>>> {
+pub(crate) fn samplers(slices: &Slices, seed: u64) -> Vec<Rival<Sampler<'_>>> {
     let sigma = SIGMA as f32;
-    let [of_caps, of_list, of_heitz, of_closed] = [
-        double::caps as Exactly,
-        double::listed,
-        double::heitz,
-        // The closed form takes the listing's numbers in the other order: height first.
-        |sigma, v, [height, azimuth]| double::caps(sigma, v, [azimuth, height]),
-    ]
-    .map(Check::Formula);
+    let [of_caps, of_list, of_heitz, of_closed] =
+        [double::caps as Exactly, double::listed, double::heitz, closed].map(Check::Formula);
     let listed = in_a_loop(move |v, u| single::listed(sigma, v, u));
-    let closed = Ggx::new(SIGMA).expect("a constant");
-    let closed = move |v, u| closed.sample_visible_normal(v, u);
+    let ggx = Ggx::new(SIGMA).expect("a constant");
+    let ggx = move |v, u| ggx.sample_visible_normal(v, u);
     let (any, four) = (Lobe::any(SIGMA, GAMMA), Lobe::four(SIGMA));
     let truth = model::StudentT::new(SIGMA, GAMMA).expect("constants");
     let doubles = move |v: Vec3, u: [f32; 2]| {
@@ -123,7 +135,7 @@ pub(crate) fn samplers(slices: &Slices, seed: u64) -> Vec<Rival<Sampler<'static>
         one("GGX, spherical caps as listed", 2.0, of_list, move |v, u| single::listed(sigma, v, u)),
         visible("GGX, spherical caps as listed, in a loop", 2.0, of_list, listed),
         one("GGX, Heitz 2018", 2.0, of_heitz, move |v, u| single::heitz(sigma, v, u)),
-        one("GGX, closed form of the sampler crate", 2.0, of_closed, closed),
+        one("GGX, closed form of the sampler crate", 2.0, of_closed, ggx),
         one("Beckmann, numerical inversion", f64::INFINITY, Check::Falling, move |v, u| {
             beckmann::sample(sigma, v, u)
         }),
@@ -144,6 +156,7 @@ pub(crate) fn samplers(slices: &Slices, seed: u64) -> Vec<Rival<Sampler<'static>
     let density = Density::Bounded(bounded.clone().into());
     let batch: Draw = Box::new(move |v, u, m| lobe.sample_batch(v, u, m).expect("of one length"));
     all.push(visible(BATCH, GAMMA, Check::Cdf, batch).of(default));
+    all.push(visible(FAMILY, GAMMA, Check::Cdf, of_family(slices)).of_family(slices));
     let name = "table, default, bounded to reflections";
     let bounded = one(name, GAMMA, Check::Distribution, move |v, u| bounded.at(v).sample(u));
     all.push(with_density(bounded, density).of(default));

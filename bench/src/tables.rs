@@ -4,13 +4,16 @@ use microfacet_baker::plan::{Options, Plan};
 use microfacet_baker::scene::Scene;
 use microfacet_baker::table_set::{Target, bake};
 use microfacet_baker::table_spec::Quality;
-use microfacet_sampler::Tables;
+use microfacet_sampler::{Family, Tables};
 use microfacet_tables::Precision;
 
 use crate::settings::{GAMMA, SIGMA};
 
-/// Sets by name: slices at [`GAMMA`], and the compiled-in set for all shapes.
-pub(crate) struct Slices(Vec<(&'static str, Tables)>);
+/// Sets by name: slices at [`GAMMA`], and the compiled-in set for all shapes, with its family.
+pub(crate) struct Slices {
+    sets: Vec<(&'static str, Tables)>,
+    family: Family,
+}
 
 /// Names that figures refer to.
 pub(crate) const TABLE: &str = "table, default";
@@ -21,18 +24,21 @@ impl Slices {
     /// Bakes them; a fraction of a second.
     pub(crate) fn bake() -> Self {
         let slice = |name, quality, precision| (name, slice(quality, precision));
-        Self(vec![
+        let whole = Tables::embedded();
+        let family = whole.family().expect("it has every shape");
+        let sets = vec![
             slice("table, draft", Quality::Draft, Precision::F32),
             slice(TABLE, Quality::Default, Precision::F32),
             slice(HIGH, Quality::High, Precision::F32),
             slice("table, default, f16", Quality::Default, Precision::F16),
             slice("table, default, u16", Quality::Default, Precision::U16),
-            (WHOLE, Tables::embedded()),
-        ])
+            (WHOLE, whole),
+        ];
+        Self { sets, family }
     }
 
     pub(crate) fn get(&self, name: &str) -> &Tables {
-        &self.0.iter().find(|(of, _)| *of == name).expect("a name of the list").1
+        &self.sets.iter().find(|(of, _)| *of == name).expect("a name of the list").1
     }
 
     /// The slice of default quality.
@@ -45,8 +51,13 @@ impl Slices {
         self.get(WHOLE)
     }
 
+    /// The lobes of every σ and γ of the compiled-in set.
+    pub(crate) fn family(&self) -> &Family {
+        &self.family
+    }
+
     pub(crate) fn each(&self) -> impl Iterator<Item = &(&'static str, Tables)> {
-        self.0.iter()
+        self.sets.iter()
     }
 }
 

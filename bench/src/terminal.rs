@@ -13,18 +13,21 @@ pub(crate) fn table(rows: &[Row]) -> String {
         (Quantity::G1, "G1"),
         (Quantity::D, "D"),
         (Quantity::Conductor, "conductor, sample_with_pdf and eval_pdf"),
+        (Quantity::Evaluation, "conductor, eval_pdf"),
+        (Quantity::PerHit, "parameters per hit"),
     ] {
         text += &format!(
-            "\n{title:42} {:>5} {:>9} {:>8} {:>8} {:>9} {:>9}",
+            "\n{title:42} {:>6} {:>9} {:>8} {:>8} {:>9} {:>9}",
             "gamma", "ns", "bytes", "stored", "max", "rms"
         );
         text += if quantity == Quantity::Normal { "  variance  var x ns\n" } else { "\n" };
         for row in rows.iter().filter(|row| row.quantity == quantity) {
             let error = |x: Option<f64>| x.map_or("-".into(), |x| format!("{x:.1e}"));
             let (max, rms) = (error(row.error_max), error(row.error_rms));
-            let Row { name, gamma, ns, bytes, stored_bytes: stored, .. } = row;
+            let Row { name, ns, bytes, stored_bytes: stored, .. } = row;
+            let gamma = if row.gamma.is_nan() { "varies".into() } else { row.gamma.to_string() };
             text +=
-                &format!("{name:42} {gamma:>5} {ns:>9.2} {bytes:>8} {stored:>8} {max:>9} {rms:>9}");
+                &format!("{name:42} {gamma:>6} {ns:>9.2} {bytes:>8} {stored:>8} {max:>9} {rms:>9}");
             if let (Some(variance), Some(cost)) = (row.furnace_variance, row.variance_ns) {
                 text += &format!(" {variance:>9.5} {cost:>9.3}");
             }

@@ -1,22 +1,28 @@
 //! The functions of one direction that are compared: Smith's G1, and D. D of Student-t has a closed
 //! form for every γ, with a power where GGX has a square.
 
+use std::hint::black_box;
+
 use glam::Vec3;
 use microfacet_model as model;
 use microfacet_model::MicrofacetDistribution as _;
 use microfacet_sampler::MicrofacetDistribution as _;
-use microfacet_sampler::lobe::Batch as _;
+use microfacet_sampler::lobe::{Batch as _, FamilyLobe};
 
-use crate::inputs::Inputs;
+use crate::inputs::{COUNT, Inputs};
 use crate::rival::{Evaluate, Rival, each_value, lobe};
 use crate::rivals::lobe::Lobe;
+use crate::rivals::logarithm::Logarithm;
 use crate::rivals::rational::Rational;
 use crate::rivals::{beckmann, ggx};
 use crate::settings::{GAMMA, SIGMA};
 use crate::tables::Slices;
+use crate::textures::Texture;
 
-/// The name that figures refer to.
+/// Names that figures refer to.
 pub(crate) const GGX: &str = "GGX, closed form";
+pub(crate) const BITS: &str = "table by the bits of the float";
+pub(crate) const LOGARITHM: &str = "logarithm and exponential, as before";
 
 const BECKMANN: f64 = f64::INFINITY;
 
@@ -25,7 +31,7 @@ fn form<'a>(name: &'static str, gamma: f64, one: impl Fn(Vec3) -> f32 + 'a) -> R
 }
 
 /// The computations of G1, over the given tables.
-pub(crate) fn maskings(slices: &Slices) -> Vec<Rival<Evaluate<'static>>> {
+pub(crate) fn maskings(slices: &Slices) -> Vec<Rival<Evaluate<'_>>> {
     let sigma = SIGMA as f32;
     let (any, four) = (Lobe::any(SIGMA, GAMMA), Lobe::four(SIGMA));
     let half = Lobe::three_and_a_half(SIGMA);
@@ -44,6 +50,7 @@ pub(crate) fn maskings(slices: &Slices) -> Vec<Rival<Evaluate<'static>>> {
         form("sum for half-integer gamma", 3.5, move |w| half.g1(w)),
         form("rational approximation (eq. 22-23)", GAMMA, move |w| rational.g1(w)),
         Rival::form("table, default, batch", GAMMA, batch).of(slices.default()),
+        Rival::form(FAMILY, GAMMA, of_family(slices, |lobe, w| lobe.g1(w))).of_family(slices),
     ];
     all.extend(slices.each().map(|(name, set)| {
         let table = lobe(set, GAMMA);
@@ -52,19 +59,40 @@ pub(crate) fn maskings(slices: &Slices) -> Vec<Rival<Evaluate<'static>>> {
     all
 }
 
-/// The computations of D, also of a shape below 1.8 and of Beckmann.
-pub(crate) fn densities(slices: &Slices) -> Vec<Rival<Evaluate<'static>>> {
+const FAMILY: &str = "table, family, sigma and gamma per call";
+
+/// The family at the σ and γ of all rivals, which it is told at every call.
+fn of_family<'a>(
+    slices: &'a Slices,
+    one: impl Fn(FamilyLobe<'a>, Vec3) -> f32 + 'a,
+) -> Evaluate<'a> {
+    let (family, texture) = (slices.family(), Texture::constant(COUNT));
+    Box::new(move |w, values| {
+        for (([sigma, gamma], w), value) in texture.each().zip(w).zip(values) {
+            *value = black_box(one(family.at(sigma, gamma), *w));
+        }
+    })
+}
+
+/// The computations of D: from a table of one shape, also of one below 1.8; and as a power by a
+/// logarithm and an exponential, of Beckmann and where γ is free.
+pub(crate) fn densities(slices: &Slices) -> Vec<Rival<Evaluate<'_>>> {
     let sigma = SIGMA as f32;
     let power = model::StudentT::new(SIGMA, GAMMA).expect("constants");
-    let mut all = vec![
-        form("GGX, closed form", 2.0, move |m| ggx::d(sigma, m)),
-        form("closed form in f64", GAMMA, move |m| power.d(m.as_dvec3()) as f32),
-    ];
-    all.extend([1.6, GAMMA, BECKMANN].map(|gamma| {
+    let logarithm = Logarithm::new(SIGMA, GAMMA);
+    let of_shape = |name, gamma| {
         let lobe = lobe(slices.whole(), gamma);
-        form("closed form of the sampler crate", gamma, move |m| lobe.d(m))
-    }));
-    all
+        form(name, gamma, move |m| lobe.d(m))
+    };
+    vec![
+        form(GGX, 2.0, move |m| ggx::d(sigma, m)),
+        form("closed form in f64", GAMMA, move |m| power.d(m.as_dvec3()) as f32),
+        form(LOGARITHM, GAMMA, move |m| logarithm.d(m)),
+        of_shape(BITS, GAMMA),
+        of_shape(BITS, 1.6),
+        of_shape("logarithm and exponential", BECKMANN),
+        Rival::form("logarithm and exponential, family", GAMMA, of_family(slices, |at, m| at.d(m))),
+    ]
 }
 
 /// The normals to evaluate D for: those that the views of some inputs see.

@@ -7,6 +7,8 @@ pub(crate) mod elementary;
 pub(crate) mod form;
 pub(crate) mod ggx;
 pub(crate) mod lobe;
+pub(crate) mod logarithm;
+pub(crate) mod lookup;
 pub(crate) mod rational;
 pub(crate) mod stream;
 pub(crate) mod tail;
