@@ -99,12 +99,7 @@ pub(crate) fn conductor<L: Reflecting + Tabulated>(
 
 /// A sampled light and the evaluation of another.
 #[inline(always)]
-pub(crate) fn of_conductor<L: Reflecting>(
-    conductor: &Conductor<L>,
-    v: Vec3,
-    l: Vec3,
-    u: [f32; 2],
-) -> [f32; 4] {
+pub(crate) fn of_conductor(conductor: &impl Bsdf, v: Vec3, l: Vec3, u: [f32; 2]) -> [f32; 4] {
     let path = conductor.sample_with_pdf(v, 0.5, u, Transport::Radiance);
     let path = path.map(|(path, pdf)| (path.l.into(), path.weight, pdf));
     used(path, conductor.eval_pdf(v, l, Transport::Radiance))

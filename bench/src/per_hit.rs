@@ -5,7 +5,9 @@ use std::hint::black_box;
 use std::ops::Range;
 
 use glam::Vec3;
-use microfacet_sampler::{Ggx, MicrofacetDistribution as _};
+use microfacet_sampler::albedo::AlbedoAt;
+use microfacet_sampler::lobe::Reflecting;
+use microfacet_sampler::{Conductor, ConductorFresnel, Ggx, Masking, MicrofacetDistribution as _};
 
 use crate::clock::Calls;
 use crate::conductors::{
@@ -196,6 +198,8 @@ fn values<'a>(slices: &'a Slices, on: &'a Surfaces<'a>) -> Vec<Rival<PerHit<'a>>
     let d = What::D(each(constant, move |hit| c.d(hit.m)));
     let d_at_hit = What::D(each(whole, |hit| family.at(hit.sigma, hit.gamma).d(hit.m)));
     let d_of_ggx = What::D(each(ggx, |hit| of_ggx(hit).d(hit.m)));
+    let volume = slices.albedo();
+    let e_at_hit = What::Albedo(each(whole, |hit| volume.at(hit.sigma, hit.gamma).albedo(hit.v)));
     let e_of_ggx = What::Albedo(each(ggx, move |hit| lookup.at(hit.sigma, hit.v.z)));
     vec![
         form("G1, everything bound", GAMMA, constant, g1).of(set),
@@ -206,8 +210,7 @@ fn values<'a>(slices: &'a Slices, on: &'a Surfaces<'a>) -> Vec<Rival<PerHit<'a>>
         // No table of its shape.
         form("D, sigma and gamma random", VARIES, whole, d_at_hit),
         form("D of GGX, sigma per hit", 2.0, ggx, d_of_ggx),
-        // The place of `ALBEDO`: the set's own E at σ and γ of a hit,
-        // What::Albedo(each(whole, |hit| albedo.at(hit.sigma, hit.gamma).albedo(hit.v))).
+        Rival { bytes: volume.bytes(), ..form(ALBEDO, VARIES, whole, e_at_hit) },
         Rival { bytes, stored: bytes, ..form(LOOKUP, 2.0, ggx, e_of_ggx) },
     ]
 }
@@ -221,27 +224,33 @@ fn conductors<'a>(slices: &'a Slices, on: &'a Surfaces<'a>) -> Vec<Rival<PerHit<
     let bound = conductor(bound, fresnel);
     let bound = each(constant, move |hit| of_conductor(&bound, hit.v, hit.l, hit.u));
     let shape = each(of_sigma, move |hit| {
-        let conductor = conductor(shape.with_roughness(hit.sigma), fresnel);
+        let conductor = at_hit(shape.with_roughness(hit.sigma), fresnel);
         of_conductor(&conductor, hit.v, hit.l, hit.u)
     });
-    let at_hit = each(whole, move |hit| {
-        let conductor = conductor(family.at(hit.sigma, hit.gamma), fresnel);
+    let general = each(whole, move |hit| {
+        let conductor = at_hit(family.at(hit.sigma, hit.gamma), fresnel);
         of_conductor(&conductor, hit.v, hit.l, hit.u)
     });
     let of_ggx =
-        each(ggx, move |hit| of_conductor(&conductor(of_ggx(hit), fresnel), hit.v, hit.l, hit.u));
+        each(ggx, move |hit| of_conductor(&at_hit(of_ggx(hit), fresnel), hit.v, hit.l, hit.u));
     let by_hand = each(ggx, |hit| {
         of_conductor_by_hand(&GgxConductor::new(hit.sigma, schlick_by_hand), hit.v, hit.l, hit.u)
     });
-    let [bound, shape, at_hit, of_ggx, by_hand] =
-        [bound, shape, at_hit, of_ggx, by_hand].map(What::Conductor);
+    let [bound, shape, general, of_ggx, by_hand] =
+        [bound, shape, general, of_ggx, by_hand].map(What::Conductor);
     vec![
         form("conductor, everything bound", GAMMA, constant, bound).of(set),
         form("conductor, sigma per hit", GAMMA, of_sigma, shape).of(set),
-        form("conductor, sigma and gamma random", VARIES, whole, at_hit).of_family(slices),
+        form("conductor, sigma and gamma random", VARIES, whole, general).of_family(slices),
         form("conductor of Ggx, sigma per hit", 2.0, ggx, of_ggx),
         form("conductor of GGX by hand, sigma per hit", 2.0, ggx, by_hand),
     ]
+}
+
+/// A conductor of one bounce, made at a hit.
+#[inline(always)]
+fn at_hit<'a, L: Reflecting>(lobe: L, fresnel: ConductorFresnel) -> Conductor<L, 3, AlbedoAt<'a>> {
+    Conductor::at_hit(lobe, fresnel, Masking::HeightCorrelated)
 }
 
 /// The rival, made at a hit.

@@ -4,7 +4,8 @@ use microfacet_baker::plan::{Options, Plan};
 use microfacet_baker::scene::Scene;
 use microfacet_baker::table_set::{Target, bake};
 use microfacet_baker::table_spec::Quality;
-use microfacet_sampler::{Family, Tables};
+use microfacet_sampler::albedo::FamilyAlbedo;
+use microfacet_sampler::{Family, Masking, Tables};
 use microfacet_tables::Precision;
 
 use crate::settings::{GAMMA, SIGMA};
@@ -13,6 +14,7 @@ use crate::settings::{GAMMA, SIGMA};
 pub(crate) struct Slices {
     sets: Vec<(&'static str, Tables)>,
     family: Family,
+    albedo: FamilyAlbedo,
 }
 
 /// Names that figures refer to.
@@ -26,6 +28,7 @@ impl Slices {
         let slice = |name, quality, precision| (name, slice(quality, precision));
         let whole = Tables::embedded();
         let family = whole.family().expect("it has every shape");
+        let albedo = whole.family_albedo(Masking::HeightCorrelated).expect("and every moment");
         let sets = vec![
             slice("table, draft", Quality::Draft, Precision::F32),
             slice(TABLE, Quality::Default, Precision::F32),
@@ -34,7 +37,7 @@ impl Slices {
             slice("table, default, u16", Quality::Default, Precision::U16),
             (WHOLE, whole),
         ];
-        Self { sets, family }
+        Self { sets, family, albedo }
     }
 
     pub(crate) fn get(&self, name: &str) -> &Tables {
@@ -54,6 +57,11 @@ impl Slices {
     /// The lobes of every σ and γ of the compiled-in set.
     pub(crate) fn family(&self) -> &Family {
         &self.family
+    }
+
+    /// The albedos of every σ and γ of the compiled-in set.
+    pub(crate) fn albedo(&self) -> &FamilyAlbedo {
+        &self.albedo
     }
 
     pub(crate) fn each(&self) -> impl Iterator<Item = &(&'static str, Tables)> {
