@@ -13,11 +13,10 @@ use microfacet_tables::{Interpolation, Kind, Mapping, Table};
 use wide::f32x4;
 
 use super::heavy::{Tail, cell_of_share};
-use super::lanes::four::LANES;
 use super::lanes::sum;
 use super::normals::PowerLaw;
 use super::slices::{Slice, Slices, ascending_across, ascending_rows};
-use super::surface::Shape;
+use super::surface::{LANES, Shape};
 use super::windows::{Planes, Window, Windows};
 
 /// Stands for γ = ∞: the reciprocal of γ − 1, and its square, are still normal numbers.

@@ -12,9 +12,8 @@ use alloc::vec::Vec;
 use wide::{f32x4, i32x4};
 
 use microfacet_core::math::unit;
-use microfacet_tables::axis::hermite::{Cell, cubic, cubic_lanes, split};
+use microfacet_tables::axis::hermite::{Cell, cubic, cubic_lanes, cubic_through_thirds, split};
 
-use super::windows::through_thirds;
 use crate::elementary::{exp2, log2};
 
 /// Cells of the share for each row of the table: its transition near normal incidence narrows as
@@ -52,7 +51,7 @@ impl Heavy {
         let cell = |i: usize| {
             let [a, b, c, d] = [0.0, 1.0, 2.0, 3.0]
                 .map(|thirds| share(((i as f64 + thirds / 3.0) / cells as f64).min(1.0)));
-            through_thirds([a, b, c, d]).map(|x| x as f32)
+            cubic_through_thirds([a, b, c, d]).map(|x| x as f32)
         };
         let mut shares: Vec<Cell> = (0..cells).map(cell).collect();
         shares.push([share(1.0) as f32, 0.0, 0.0, 0.0]);

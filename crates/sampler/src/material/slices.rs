@@ -13,11 +13,11 @@ use wide::f32x4;
 
 use super::coverage::{self, end_weights, shape_weights};
 use super::heavy::{Heavy, Tail};
-use super::lanes::four::{LANES, coefficients};
+use super::lanes::four::coefficients;
 use super::lanes::one::pair;
 use super::lanes::swap_halves;
 use super::normals::Normals;
-use super::surface::Shape;
+use super::surface::{LANES, Shape};
 use crate::error::MaterialError;
 
 /// A (value, slope) table without its γ axis.

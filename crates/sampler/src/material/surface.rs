@@ -17,7 +17,9 @@ use wide::f32x4;
 
 use super::distribution::{Facet, GRAZING, SMOOTH, SMOOTH_MASKED, visible_density};
 use super::heavy::Tail;
-use super::lanes::four::LANES;
+
+/// Directions that lookups take at once.
+pub(crate) const LANES: usize = 4;
 
 /// What lookups read of one shape. Indices are of nodes and cells; one that is out of range, as NaN
 /// gives, is answered by NaN or `None`.

@@ -9,7 +9,7 @@
 use alloc::vec::Vec;
 
 use microfacet_core::shape::S_END;
-use microfacet_tables::axis::hermite::{Cell, Node};
+use microfacet_tables::axis::hermite::{Cell, Node, cubic_through_thirds};
 use microfacet_tables::axis::lagrange;
 use wide::f32x4;
 
@@ -119,15 +119,8 @@ fn window(nodes: &[f64], from: f64, to: f64) -> (usize, [[f32; FOUR]; FOUR]) {
         exact.into_iter().for_each(|(i, weight)| weights[i] = weight);
         weights
     });
-    let cubics: [_; FOUR] = core::array::from_fn(|k| through_thirds(values.map(|at| at[k])));
+    let cubics: [_; FOUR] = core::array::from_fn(|k| cubic_through_thirds(values.map(|at| at[k])));
     (start, core::array::from_fn(|power| cubics.map(|cubic| cubic[power] as f32)))
-}
-
-/// The powers' coefficients of the cubic through values at 0, 1/3, 2/3 and 1.
-pub(super) fn through_thirds([a, b, c, d]: [f64; 4]) -> [f64; 4] {
-    let (first, second, third) = (b - a, c - 2.0 * b + a, d - 3.0 * c + 3.0 * b - a);
-    let linear = 3.0 * (first - 0.5 * second + third / 3.0);
-    [a, linear, 4.5 * (second - third), 4.5 * third]
 }
 
 /// A table by its places, each with the values of all γ next to each other.

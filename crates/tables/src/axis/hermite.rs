@@ -61,6 +61,13 @@ pub fn cubic_cells(nodes: &[Node], scale: f64) -> Vec<Cell> {
     cubics.chain(guard).map(|c| c.map(|c| (c * scale) as f32)).collect()
 }
 
+/// The coefficients of the cubic through values at 0, 1/3, 2/3 and 1.
+pub fn cubic_through_thirds([a, b, c, d]: [f64; 4]) -> [f64; 4] {
+    let (first, second, third) = (b - a, c - 2.0 * b + a, d - 3.0 * c + 3.0 * b - a);
+    let linear = 3.0 * (first - 0.5 * second + third / 3.0);
+    [a, linear, 4.5 * (second - third), 4.5 * third]
+}
+
 /// The cubic of a cell at position w with the fewest operations.
 #[inline(always)]
 pub fn horner(c: &Cell, w: f32) -> f32 {
@@ -225,6 +232,14 @@ mod tests {
             }
         }
         assert_eq!(horner(&coefficients[2], 0.0), 0.7);
+    }
+
+    #[test]
+    fn a_cubic_is_met_through_its_values_at_thirds() {
+        let exact = [0.3, -1.0, 2.0, 0.7];
+        let value = |w: f64| exact[0] + w * (exact[1] + w * (exact[2] + w * exact[3]));
+        let got = cubic_through_thirds([0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(value));
+        assert!(got.iter().zip(exact).all(|(got, want)| (got - want).abs() < 1e-14), "{got:?}");
     }
 
     #[test]

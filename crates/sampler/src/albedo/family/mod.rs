@@ -2,8 +2,8 @@
 //! (γ, σ, view), made once from a table of moments, in which a lookup costs little more than one in
 //! a texture.
 //!
-//! `axes` has the coordinates, of which `octaves` is the logarithm, `spline` the polynomials between
-//! nodes, and `build` fills the volume.
+//! `axes` has the coordinates, of which `octaves` is the logarithm, `spline` the polynomials
+//! between nodes, and `build` fills the volume.
 
 mod axes;
 mod build;

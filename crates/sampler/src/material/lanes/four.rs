@@ -20,10 +20,9 @@ use super::one::{least_clear, start};
 use super::views::Views;
 use crate::material::heavy::parts;
 use crate::material::horizon::HORIZON;
-use crate::material::surface::{Shape, Surface};
+use crate::material::surface::{LANES, Shape, Surface};
 use crate::vector::vec3;
 
-pub(crate) const LANES: usize = 4;
 /// How many groups of four go through each stage together.
 const GROUPS: usize = 8;
 

@@ -7,9 +7,9 @@ use wide::f32x4;
 use microfacet_tables::axis::above_zero;
 use microfacet_tables::axis::hermite::split;
 
-use super::four::{LANES, transpose};
+use super::four::transpose;
 use super::{swap_halves, swap_pairs};
-use crate::material::surface::{Shape, Surface};
+use crate::material::surface::{LANES, Shape, Surface};
 use crate::vector::vec3;
 
 /// Returns 0, the G1 of NaN; cold, so that the common path stays short.
