@@ -124,7 +124,7 @@ impl EllipsoidRef<'_> {
 
     /// Uv, the direction in unit space.
     #[inline(always)]
-    fn to_unit(&self, v: Vec3) -> Vec3 {
+    fn to_unit(self, v: Vec3) -> Vec3 {
         let Matrix { p, q, r, x, y } = self.matrix;
         Vec3::new(p * v.x, q * v.x + r * v.y, x * v.x + y * v.y + v.z)
     }

@@ -19,9 +19,12 @@ pub(crate) fn checked(sigma: Roughness) -> Result<[f32; 2], MaterialError> {
 
 /// Both σ in [`SIGMAS`], NaN at its lower end.
 #[inline(always)]
+#[expect(
+    clippy::manual_clamp,
+    reason = "`max` takes NaN to the other number, `clamp` would keep it"
+)]
 pub(crate) fn clamped(sigma: Roughness) -> [f32; 2] {
     const LOW: f32 = SIGMAS[0] as f32;
     const HIGH: f32 = SIGMAS[1] as f32;
-    // `max` takes NaN to the other number, which `clamp` would keep.
     sigma.0.map(|sigma| (sigma as f32).max(LOW).min(HIGH))
 }
