@@ -10,6 +10,7 @@ mod furnace;
 mod inspect;
 mod interrupt;
 mod parser;
+mod per_hit;
 mod plan;
 mod plot;
 mod progress;

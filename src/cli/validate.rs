@@ -7,6 +7,7 @@ use microfacet_sampler::Tables;
 use microfacet_tables::Reflectance;
 use microfacet_validate::configuration::{Configuration, configurations, shapes};
 use microfacet_validate::furnace::{Furnace, Survey, survey, survey_seconds};
+use microfacet_validate::per_hit;
 use microfacet_validate::record::Record;
 use microfacet_validate::{
     Options, Outcome as Found, PDF_TOLERANCE, Report, run as run_all, seconds,
@@ -24,6 +25,7 @@ use super::{
   microfacet-bake validate --configurations 50 --samples 1e6
   microfacet-bake validate --sigma 0.3 --gamma 3 --theta 60 --degrees
   microfacet-bake validate glass --json > glass.json    for `report glass --validation glass.json`
+  microfacet-bake validate glass --per-hit
   microfacet-bake validate --stress --points 2e6")]
 pub(super) struct Args {
     /// A table file, or a folder with one; the embedded default if absent.
@@ -51,6 +53,10 @@ pub(super) struct Args {
     gamma: Option<f64>,
     #[command(flatten, next_help_heading = ONE)]
     view: View,
+    /// Test lobes of sigma and gamma that textures give, as `Tables::family` draws them, instead:
+    /// both are drawn for each normal.
+    #[arg(long, help_heading = PER_HIT, conflicts_with_all = ["sigma", "gamma", "theta", "phi", "degrees", "configurations", "stress"])]
+    per_hit: bool,
     /// Test every public function at corners and random points instead: no NaN, nothing out of
     /// range.
     #[arg(long, help_heading = STRESS, conflicts_with_all = ["sigma", "gamma", "theta", "phi", "degrees", "perturb_gamma", "samples", "configurations"])]
@@ -61,6 +67,7 @@ pub(super) struct Args {
 }
 
 const ONE: &str = "One configuration";
+const PER_HIT: &str = "Sigma and gamma that differ from hit to hit";
 const STRESS: &str = "Stress test";
 
 pub(super) fn run(args: &Args) -> Outcome {
@@ -72,6 +79,15 @@ pub(super) fn run(args: &Args) -> Outcome {
         let source = source.map_or(String::new(), |path| format!(" --tables {path}"));
         return super::stress::stress(&set, args.points, args.seed, args.json, &source);
     }
+    if args.per_hit {
+        let family = set.family()?;
+        let factor = args.perturb_gamma;
+        perturbed(family.gammas().map(|[low, _]| f64::from(low)), factor)?;
+        let (samples, seed) = (args.samples, args.seed);
+        let options = per_hit::Options { samples, seed, gamma_factor: factor, sigma_factor: 1.0 };
+        let source = source.map_or(String::new(), |path| format!(" --tables {path}"));
+        return super::per_hit::per_hit(&set, &family, options, args.json, &source);
+    }
     let chosen = match (args.sigma, args.gamma, args.view.angles()?) {
         (Some([sigma_x, sigma_y]), Some(gamma), Some([theta, phi])) => {
             values::tabulated(&[gamma], "")?;
@@ -80,15 +96,7 @@ pub(super) fn run(args: &Args) -> Outcome {
         _ => configurations(&set, args.configurations, args.seed),
     };
     let factor = args.perturb_gamma;
-    let smallest = chosen.iter().map(|one| one.gamma).fold(f64::INFINITY, f64::min);
-    if smallest * factor <= 1.5 {
-        bail!(
-            "--perturb-gamma {factor} takes the gamma {} of a configuration out of (1.5, inf]: \
-             give a factor above {:.4}",
-            number(smallest),
-            1.5 / smallest + 5e-5
-        );
-    }
+    perturbed(chosen.iter().map(|one| one.gamma), factor)?;
     let options = Options { samples: args.samples, gamma_factor: factor };
     // A single configuration tests its lobe only.
     let whole = args.sigma.is_none();
@@ -110,6 +118,20 @@ pub(super) fn run(args: &Args) -> Outcome {
     let source = source.map_or(String::new(), |path| format!("{path} "));
     summarize(&text(&result, options, &source, &furnaces, &untested))?;
     verdict(passed)
+}
+
+/// Refuses a factor that takes one of the shapes out of the family.
+fn perturbed(gammas: impl Iterator<Item = f64>, factor: f64) -> Result<()> {
+    let smallest = gammas.fold(f64::INFINITY, f64::min);
+    if smallest * factor <= 1.5 {
+        bail!(
+            "--perturb-gamma {factor} takes the gamma {} of a configuration out of (1.5, inf]: \
+             give a factor above {:.4}",
+            number(smallest),
+            1.5 / smallest + 5e-5
+        );
+    }
+    Ok(())
 }
 
 fn text(

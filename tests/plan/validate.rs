@@ -98,6 +98,26 @@ fn what_has_no_lobe_is_refused_or_named() {
     has(&with_ggx.ok("validate set --samples 20000"), &["--gamma 2 "]);
 }
 
+/// σ and γ at a hit: of every set that has a range of γ, and refused in words where there is none.
+#[test]
+fn lobes_per_hit_are_judged_where_a_set_has_a_range() {
+    let line = "validate set --per-hit --samples 20000";
+    for range in ["1.6, max = 4", "3, max = 4", "2, max = \"inf\"", "1.55, max = 1.7"] {
+        let desk = baked("draft", &material(&format!("gamma = {{ min = {range} }}")));
+        let judged = desk.json(line);
+        let count = judged["mixtures"].as_array().unwrap().len();
+        assert!(judged["passed"] == true && [7, 14].contains(&count), "{range}: {judged}");
+        let wrong = desk.run(&format!("{line} --perturb-gamma 1.01")).ends(1);
+        has(&wrong.out, &["REJECTED", "largest errors", "microfacet-bake query normal"]);
+    }
+    let single = baked("draft", &material("gamma = 3.0"));
+    single.refuses(
+        line,
+        &["no tables over a range of gamma", "gamma = { min = 1.6, max = \"inf\" }"],
+    );
+    single.refuses("validate --per-hit --perturb-gamma 0.9", &["out of (1.5, inf]", "above 0.99"]);
+}
+
 /// A right set is rejected rarely, also by a single configuration; a wrong one surely.
 #[test]
 fn a_single_configuration_is_not_rejected_by_chance() {

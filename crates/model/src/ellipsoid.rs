@@ -147,17 +147,12 @@ impl Ellipsoid {
     pub fn invert_visible_normal(&self, v: DVec3, m: DVec3) -> [f64; 2] {
         let view = self.view(v);
         let m = turn(self.normal_to_unit(m), view.cos_phi, -view.sin_phi);
-        let (x, y) = (m.x / m.z, m.y / m.z);
-        let w = self.shape.asinh_slope(x.abs());
-        let x_at = SignedSlope { w, sign: 1.0_f64.copysign(x) };
-        let along = match self.in_plane(&view) {
-            InPlane::Above(visible) => visible.cdf(x_at),
-            InPlane::Below(_) if x < 0.0 => 0.0,
-            InPlane::Below(below) => 1.0 - below.complement(w),
-        };
-        let t = y / (1.0 + self.shape.s() * x * x).sqrt();
-        let t = SignedSlope { w: self.shape.asinh_slope(t.abs()), sign: 1.0_f64.copysign(t) };
-        [along, visible::across_cdf(&self.shape, t)]
+        let slopes = self.in_plane(&view);
+        visible::numbers(&self.shape, m, |x| match &slopes {
+            InPlane::Above(visible) => visible.cdf(x),
+            InPlane::Below(_) if x.sign < 0.0 => 0.0,
+            InPlane::Below(below) => 1.0 - below.complement(x.w),
+        })
     }
 
     /// A normal distributed as D(m)(m·n) from u ∈ [0, 1)².

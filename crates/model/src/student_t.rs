@@ -143,6 +143,17 @@ impl StudentT {
         (view, [cos_phi, sin_phi])
     }
 
+    /// The random numbers at which
+    /// [`sample_visible_normal`](MicrofacetDistribution::sample_visible_normal) gives m: uniform on
+    /// [0, 1]² for visible normals, whatever σ, γ and v are drawn for each.
+    pub fn invert_visible_normal(&self, v: DVec3, m: DVec3) -> [f64; 2] {
+        let Stretched { view, cos_phi, sin_phi } = self.stretch(v.with_z(v.z.max(0.0)));
+        let (x, y) = (m.x / self.sigma_x, m.y / self.sigma_y);
+        let m = DVec3::new(x * cos_phi + y * sin_phi, y * cos_phi - x * sin_phi, m.z);
+        let slopes = VisibleSlope::new(&self.shape, view);
+        visible::numbers(&self.shape, m, |x| slopes.cdf(x))
+    }
+
     /// The normal in the tangent frame with the unit slopes x (towards the viewer) and
     /// t = y/√(1 + s x²).
     pub(crate) fn assemble(&self, at: &Stretched, x: SignedSlope, t: SignedSlope) -> DVec3 {

@@ -248,6 +248,17 @@ pub fn across_quantile(shape: &Shape, u: f64) -> SignedSlope {
     SignedSlope { w, sign }
 }
 
+/// The inverse of [`unit_normal`]: the CDF `along` the plane of incidence, and that across it, at a
+/// normal of unit space, of any length.
+pub(crate) fn numbers(shape: &Shape, m: DVec3, along: impl Fn(SignedSlope) -> f64) -> [f64; 2] {
+    let at = |slope: f64| SignedSlope {
+        w: shape.asinh_slope(slope.abs()),
+        sign: 1.0_f64.copysign(slope),
+    };
+    let across = m.y / libm::hypot(m.z, shape.s().sqrt() * m.x);
+    [along(at(m.x / m.z)), across_cdf(shape, at(across))]
+}
+
 /// CDF of the slope across, in units of √(1 + s x²).
 pub fn across_cdf(shape: &Shape, t: SignedSlope) -> f64 {
     let tail = shape.across_tail(t.w);

@@ -169,6 +169,18 @@ proptest! {
     }
 
     #[test]
+    fn normals_are_inverted(x in sigma(), y in sigma(), gamma in gamma(), v in direction(), u in number(), across in number()) {
+        let t = StudentT::new([x, y], gamma).unwrap();
+        let m = t.sample_visible_normal(v, [u, across]);
+        let back = t.invert_visible_normal(v, m);
+        // Normals are kept away from the horizon, and a slope that is far larger than the other
+        // leaves no digits of it.
+        let seen = |number: f64| m.z > 1e-290 && (1e-6..1.0 - 1e-6).contains(&number);
+        prop_assert!(!seen(across) || (back[0] - u).abs() < 1e-6, "{u} {across}: {back:?}");
+        prop_assert!(!seen(u) || (back[1] - across).abs() < 1e-6, "{u} {across}: {back:?}");
+    }
+
+    #[test]
     fn quantiles_invert_the_cdfs_and_density_is_their_derivative(
         gamma in prop_oneof![1.6..12.0, Just(1e6), Just(f64::INFINITY)], z in (-3.0..2.0_f64).prop_map(|x| 10_f64.powf(x)),
         u in 0.001..0.999_f64,

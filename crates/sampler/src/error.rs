@@ -162,8 +162,8 @@ impl fmt::Display for MaterialError {
             ),
             Self::NoRange => f.write_str(
                 "the set has no tables over a range of gamma, from which lobes of any gamma are \
-                 read: bake a material whose gamma is a range, such as gamma = [1.6, \"inf\"], or \
-                 use `student_t` for the shapes that it has",
+                 read: bake a material whose gamma is a range, such as \
+                 gamma = { min = 1.6, max = \"inf\" }, or use `student_t` for the shapes that it has",
             ),
             Self::MaskingNotCovered { masking, other: Some(other) } => {
                 write!(f, "this set has no albedo tables for {masking} masking, only for {other}")

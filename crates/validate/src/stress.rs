@@ -10,6 +10,7 @@ mod bsdfs;
 mod checks;
 mod corners;
 mod derived;
+mod per_hit;
 
 use std::collections::BTreeMap;
 
@@ -66,9 +67,9 @@ pub struct Worst {
 }
 
 impl Worst {
-    fn see(&mut self, value: f64, at: &Point) {
-        // A NaN counts as the worst.
-        if !(value <= self.value) {
+    pub(crate) fn see(&mut self, value: f64, at: &Point) {
+        // A NaN counts as the worst, and stays.
+        if value.is_nan() || value > self.value {
             *self = Self { value, at: *at };
         }
     }
@@ -111,6 +112,8 @@ impl Region {
     }
 }
 
+/// Names of the lobes that are tested: of σ and γ bound once, of σ given at a hit, and of both.
+pub const LOBES: [&str; 3] = ["bound", "sigma per hit", "per hit"];
 /// Names of the parts of the domain by shape.
 pub const SHAPES: [&str; 4] = ["gamma < 1.8", "gamma < 4", "gamma < 1e4", "to inf"];
 /// Names of the parts of the domain by view.
@@ -121,13 +124,17 @@ pub const ROUGHNESSES: [&str; 2] = ["ordinary", "extreme"];
 /// The result of a stress run, by region.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
-    /// Indexed by position in [`SHAPES`], [`VIEWS`] and [`ROUGHNESSES`]. Not on the stack, which a
-    /// run on many threads would overflow: each halving of the points holds some reports.
-    pub regions: Box<[[[Region; ROUGHNESSES.len()]; VIEWS.len()]; SHAPES.len()]>,
+    /// Indexed by position in [`LOBES`], [`SHAPES`], [`VIEWS`] and [`ROUGHNESSES`]. Not on the
+    /// stack, which a run on many threads would overflow: each halving of the points holds some
+    /// reports.
+    pub regions: Box<[Regions; LOBES.len()]>,
 }
 
+/// The result for one kind of lobe.
+pub type Regions = [[[Region; ROUGHNESSES.len()]; VIEWS.len()]; SHAPES.len()];
+
 impl Report {
-    fn region(&mut self, at: &Point) -> &mut Region {
+    fn region(&mut self, lobe: usize, at: &Point) -> &mut Region {
         let shape = [GAMMA_WHOLE, 4.0, 1e4].iter().filter(|&&gamma| at.gamma >= gamma).count();
         let cos = at.view().z;
         let view = match cos {
@@ -137,27 +144,33 @@ impl Report {
             _ => 1,
         };
         let inside = at.sigma.iter().all(|sigma| (1e-4..=10.0).contains(sigma));
-        &mut self.regions[shape][view][usize::from(!inside)]
+        &mut self.regions[lobe][shape][view][usize::from(!inside)]
     }
 
     fn merge(mut self, other: Self) -> Self {
-        let (mine, theirs) = (self.regions.as_flattened_mut(), other.regions.as_flattened());
-        mine.as_flattened_mut().iter_mut().zip(theirs.as_flattened()).for_each(|(a, b)| a.merge(b));
+        let theirs = other.regions.as_flattened().as_flattened().as_flattened();
+        let mine = self.regions.as_flattened_mut().as_flattened_mut().as_flattened_mut();
+        mine.iter_mut().zip(theirs).for_each(|(a, b)| a.merge(b));
         self
     }
 
     /// All regions together.
     pub fn total(&self) -> Region {
-        let mut total = Region::default();
-        self.regions.as_flattened().as_flattened().iter().for_each(|region| total.merge(region));
-        total
+        total(self.regions.as_flattened())
     }
+}
+
+/// Regions of any lobes together.
+fn total(regions: &[[[Region; ROUGHNESSES.len()]; VIEWS.len()]]) -> Region {
+    let mut total = Region::default();
+    regions.as_flattened().as_flattened().iter().for_each(|region| total.merge(region));
+    total
 }
 
 /// The estimated seconds of a run of at least so many points on the current threads.
 pub fn seconds(tables: &Tables, points: u64) -> f64 {
-    // Microseconds of `microfacet-bake validate --stress --threads 1` for a point.
-    on_threads(points.max(corner_count(&corner_materials(tables))) as usize, 3.0)
+    // Microseconds of `microfacet-bake validate --stress --threads 1` for a point of a bound lobe.
+    on_threads(points.max(corner_count(&corner_materials(tables))) as usize, 4.5)
 }
 
 /// The number of corner points, about: it varies a little between materials.
@@ -168,8 +181,9 @@ fn corner_count(materials: &[([f32; 2], f64)]) -> u64 {
     (first * materials.len()) as u64
 }
 
-/// Tests all corners and then random points until `points` are tested, and counts them in a stage
-/// of the progress; the same `seed` gives the same points. A set without lobes has none.
+/// Tests all corners and then random points until `points` are tested of bound lobes, and some of
+/// them of lobes per hit; counts those of bound lobes in a stage of the progress. The same `seed`
+/// gives the same points. A set without lobes has none.
 ///
 /// # Errors
 /// [`MaterialError`] if the set does not hold what it declares to cover.
@@ -180,6 +194,8 @@ pub fn run(
     stage: &Stage,
 ) -> Result<Report, MaterialError> {
     let corners = corner_materials(tables);
+    // A set of single shapes has none.
+    let family = tables.family().ok();
     stage.split(usize::try_from(points.max(corner_count(&corners))).unwrap_or(usize::MAX));
     let corners = corners
         .par_iter()
@@ -188,7 +204,7 @@ pub fn run(
             let mut report = Report::default();
             let points = corner_points(sigma, gamma, i);
             let count = points.iter().map(Vec::len).sum();
-            checks::check(tables, sigma, gamma, points, &mut report)?;
+            checks::check(tables, family.as_ref(), sigma, gamma, points, &mut report)?;
             stage.steps(count);
             Ok::<_, MaterialError>(report)
         })
@@ -197,7 +213,8 @@ pub fn run(
     if shapes.is_empty() {
         return Ok(corners);
     }
-    let left = points.saturating_sub(corners.total().points).div_ceil(POINTS_PER_MATERIAL);
+    let left =
+        points.saturating_sub(total(&corners.regions[0]).points).div_ceil(POINTS_PER_MATERIAL);
     let random = (0..left)
         .into_par_iter()
         .fold(
@@ -207,7 +224,7 @@ pub fn run(
                 let mut numbers = corners::numbers(seed, i);
                 let (sigma, gamma) = random_material(tables, &shapes, &mut numbers);
                 let points = random_points(sigma, gamma, POINTS_PER_MATERIAL, &mut numbers);
-                checks::check(tables, sigma, gamma, points, &mut report)?;
+                checks::check(tables, family.as_ref(), sigma, gamma, points, &mut report)?;
                 stage.steps(POINTS_PER_MATERIAL as usize);
                 Ok(report)
             },

@@ -12,7 +12,7 @@ use microfacet_tables::axis::{MirroredRoot, Rational};
 use microfacet_tables::{Interpolation, Kind, Mapping, Table};
 use wide::f32x4;
 
-use super::heavy::{Tail, cell_of_share};
+use super::heavy::{self, Tail, cell_of_share, cells_of_share};
 use super::lanes::sum;
 use super::normals::PowerLaw;
 use super::slices::{Slice, Slices, ascending_across, ascending_rows};
@@ -40,8 +40,11 @@ pub(crate) struct Part {
     masking: Planes<Node>,
     masking_view: Rational,
     masking_cells: f32,
-    /// The share of the heavy part, by cell of the view coordinate; empty for whole distributions.
-    shares: Planes<Cell>,
+    /// The part of the area that is not heavy, over M₀, by cell of the view coordinate; empty for
+    /// whole distributions. It is smooth in γ up to 3/2, as the share of the heavy part is not.
+    rests: Planes<Cell>,
+    /// ρ of the same views, to which that of the heavy part is equal.
+    rhos: Vec<Cell>,
 }
 
 impl Part {
@@ -98,10 +101,19 @@ impl Part {
             let scaled = |x: f32| (f64::from(x) / cells as f64) as f32;
             Slice::node(shadowing, i).nodes.into_iter().map(|node| node.map(scaled)).collect()
         });
-        let shares = |i: usize| {
+        let at_node = |i: usize| {
             let s = shadowing.axes[0].nodes[i];
-            let slices = [Slice::node(shadowing, i), Slice::node(slope, 0)];
-            Slices::new(slices, gamma_of_s(s), s).heavy.shares
+            let slices =
+                Slices::new([Slice::node(shadowing, i), Slice::node(slope, 0)], gamma_of_s(s), s);
+            let moment = f64::from(slices.first_moment());
+            move |t: f64| slices.heavy_and_area(moment, t)
+        };
+        let rests = |i: usize| {
+            let at = at_node(i);
+            cells_of_share(rows, |t| {
+                let [rho, area] = at(t);
+                (area - rho).max(0.0)
+            })
         };
         let peeled = slope.kind == Kind::VisibleSlopePeeled;
         Self {
@@ -115,10 +127,16 @@ impl Part {
             masking,
             masking_view,
             masking_cells: cells as f32,
-            shares: if peeled {
-                Planes::new(shadowing.axes[0].nodes.len(), 0, shares)
+            rests: if peeled {
+                Planes::new(shadowing.axes[0].nodes.len(), 0, rests)
             } else {
                 Planes::default()
+            },
+            rhos: if peeled {
+                let at = at_node(0);
+                cells_of_share(rows, |t| at(t)[0])
+            } else {
+                Vec::new()
             },
         }
     }
@@ -137,7 +155,8 @@ impl Part {
             + self.slopes.bytes()
             + self.across.bytes()
             + self.masking.bytes()
-            + self.shares.bytes()
+            + self.rests.bytes()
+            + size_of_val(&self.rhos[..])
     }
 }
 
@@ -179,6 +198,15 @@ impl<'a> AtShape<'a> {
     pub(super) fn bytes(self) -> usize {
         self.part.bytes()
     }
+
+    /// The area of the heavy part and the rest, at a view coordinate in rows; NaN for NaN.
+    #[inline(always)]
+    fn areas(self, at: f32) -> [f32; 2] {
+        let (cell, w) = cell_of_share(f32x4::splat(at));
+        let (cell, w) = (cell.to_array()[0] as u32 as usize, w.to_array()[0]);
+        let rest = cubic(&self.part.rests.cell(self.masking, cell), w);
+        self.part.rhos.get(cell).map_or([f32::NAN; 2], |rho| [cubic(rho, w), rest])
+    }
 }
 
 impl<'a> Shape for AtShape<'a> {
@@ -202,7 +230,7 @@ impl<'a> Shape for AtShape<'a> {
 
     #[inline(always)]
     fn peeled(self) -> bool {
-        !self.part.shares.is_empty()
+        !self.part.rests.is_empty()
     }
 
     #[inline(always)]
@@ -252,18 +280,26 @@ impl<'a> Shape for AtShape<'a> {
 
     #[inline(always)]
     fn share(self, at: f32) -> f32 {
-        let (cell, w) = cell_of_share(f32x4::splat(at));
-        let cell = self.part.shares.cell(self.masking, cell.to_array()[0] as u32 as usize);
-        cubic(&cell, w.to_array()[0])
+        let [heavy, rest] = self.areas(at);
+        heavy / (heavy + rest)
+    }
+
+    /// Without the division, which everything else would wait for.
+    #[inline(always)]
+    fn part(self, u: f32, at: f32) -> heavy::Part {
+        let [heavy, rest] = self.areas(at);
+        heavy::Part::of_areas(u, heavy, rest)
     }
 
     #[inline(always)]
     fn shares(self, at: f32x4) -> f32x4 {
         let (cells, w) = cell_of_share(at);
-        let cells = cells.to_array();
-        let cell =
-            |i: usize| f32x4::new(self.part.shares.cell(self.masking, cells[i] as u32 as usize));
-        cubic_lanes(f32x4::transpose(from_fn(cell)), w)
+        let cells = cells.to_array().map(|cell| cell as u32 as usize);
+        let rests = cells.map(|cell| f32x4::new(self.part.rests.cell(self.masking, cell)));
+        let rhos =
+            cells.map(|cell| f32x4::new(self.part.rhos.get(cell).copied().unwrap_or_default()));
+        let [rho, rest] = [rhos, rests].map(|cells| cubic_lanes(f32x4::transpose(cells), w));
+        rho / (rho + rest)
     }
 
     #[inline(always)]

@@ -26,6 +26,21 @@ pub(super) fn cell_of_share(at: f32x4) -> (i32x4, f32x4) {
     split(at * CELLS_PER_ROW as f32)
 }
 
+/// The cells of a function of t ∈ [0, 1], for a table of `rows` cells.
+pub(super) fn cells_of_share(rows: usize, of: impl Fn(f64) -> f64) -> Vec<Cell> {
+    let cells = CELLS_PER_ROW * rows;
+    // Through four points of each cell: the share has kinks at the knots of the view's axis, which
+    // are ends of cells.
+    let cell = |i: usize| {
+        let [a, b, c, d] = [0.0, 1.0, 2.0, 3.0]
+            .map(|thirds| of(((i as f64 + thirds / 3.0) / cells as f64).min(1.0)));
+        cubic_through_thirds([a, b, c, d]).map(|x| x as f32)
+    };
+    let mut all: Vec<Cell> = (0..cells).map(cell).collect();
+    all.push([of(1.0) as f32, 0.0, 0.0, 0.0]);
+    all
+}
+
 /// The heavy part of a lobe, for all views.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Heavy {
@@ -45,17 +60,8 @@ pub(crate) struct Tail {
 impl Heavy {
     /// From its `share` of the visible area at t ∈ [0, 1], for a table of `rows` cells.
     pub(crate) fn new(gamma: f64, s: f64, rows: usize, share: impl Fn(f64) -> f64) -> Self {
-        let cells = CELLS_PER_ROW * rows;
-        // Through four points of each cell: the share has kinks at the knots of the view's axis,
-        // which are ends of cells.
-        let cell = |i: usize| {
-            let [a, b, c, d] = [0.0, 1.0, 2.0, 3.0]
-                .map(|thirds| share(((i as f64 + thirds / 3.0) / cells as f64).min(1.0)));
-            cubic_through_thirds([a, b, c, d]).map(|x| x as f32)
-        };
-        let mut shares: Vec<Cell> = (0..cells).map(cell).collect();
-        shares.push([share(1.0) as f32, 0.0, 0.0, 0.0]);
         let exponent = (1.0 / (2.0 * gamma - 3.0)) as f32;
+        let shares = cells_of_share(rows, share);
         Self { shares, tail: Tail { exponent, root_s: libm::sqrt(s) as f32 } }
     }
 
@@ -111,6 +117,17 @@ impl Part {
         let (u, rest) = (unit(u), 1.0 - share);
         // Straight from above the heavy part has no share, and u = 1 still belongs to the table.
         if u > rest { Self::Heavy(((1.0 - u) / share).min(1.0)) } else { Self::Tabulated(u / rest) }
+    }
+
+    /// The same from an area that is heavy and one that is not.
+    #[inline(always)]
+    pub(crate) fn of_areas(u: f32, heavy: f32, rest: f32) -> Self {
+        let (u, whole) = (unit(u), heavy + rest);
+        if u * whole > rest {
+            Self::Heavy(((1.0 - u) * whole / heavy).min(1.0))
+        } else {
+            Self::Tabulated((u * whole / rest).min(1.0))
+        }
     }
 }
 

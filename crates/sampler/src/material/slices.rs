@@ -178,6 +178,12 @@ impl Slices {
 
     /// M₀ρ/area at the coordinate t of a view, from the table of G1.
     pub(super) fn share_of_moment(&self, moment: f64, t: f64) -> f64 {
+        let [rho, area] = self.heavy_and_area(moment, t);
+        (rho / area).clamp(0.0, 1.0)
+    }
+
+    /// ρ and area/M₀, of the length of 1 + τ², at the coordinate t of a view.
+    pub(super) fn heavy_and_area(&self, moment: f64, t: f64) -> [f64; 2] {
         let [tau, rest] = self.view.parts(t);
         // ρ : z is 1 − τ² : 2τ.
         let (rho, z) = (rest * (1.0 + tau), 2.0 * tau);
@@ -187,8 +193,7 @@ impl Slices {
         let [c0, c1, c2, c3] = self.shadowing[cell].map(f64::from);
         let w = at - cell as f64;
         let shadowing = c0 + w * (c1 + w * (c2 + w * c3));
-        let share = moment * rho / (z + kappa * rho) * shadowing * f64::from(self.shadowing_cells);
-        share.clamp(0.0, 1.0)
+        [rho, (z + kappa * rho) / (moment * shadowing * f64::from(self.shadowing_cells))]
     }
 
     /// M₀ = ∫₀^∞ x p(x) dx, the projected area per ρ at grazing: κ over the first value of G1/q.

@@ -16,7 +16,7 @@ use microfacet_tables::axis::hermite::split;
 use wide::f32x4;
 
 use super::distribution::{Facet, GRAZING, SMOOTH, SMOOTH_MASKED, visible_density};
-use super::heavy::Tail;
+use super::heavy::{Part, Tail};
 
 /// Directions that lookups take at once.
 pub(crate) const LANES: usize = 4;
@@ -53,6 +53,11 @@ pub(crate) trait Shape: Copy {
     /// The share of the heavy part at a view coordinate in rows.
     fn share(self, at: f32) -> f32;
     fn shares(self, at: f32x4) -> f32x4;
+    /// The number along the plane of incidence within the part that it selects.
+    #[inline(always)]
+    fn part(self, u: f32, at: f32) -> Part {
+        Part::of(u, self.share(at))
+    }
     fn tail(self) -> Tail;
 
     /// κ of the view coordinate of G1; the coordinate, and its number of cells.

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use microfacet_sampler::{Bsdf, BsdfSample, Event, Transport};
+use microfacet_sampler::{Bsdf, BsdfSample, Event, Lobe, Transport};
 
 use super::bsdfs::Bsdfs;
 use super::checks::Checker;
@@ -11,7 +11,7 @@ use super::{Point, direction};
 /// What rounding may add to a bound of a weight, and take from the length of a light.
 const ROUNDING: f64 = 1e-5;
 
-impl Checker<'_> {
+impl Checker<'_, Lobe> {
     /// Tests the BSDFs at one view; `turn` chooses the index of refraction.
     pub(super) fn bsdfs(&mut self, bsdfs: &Bsdfs, points: &[Point], turn: usize) {
         let v = points[0].view();

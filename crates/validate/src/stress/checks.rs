@@ -4,14 +4,13 @@ use glam::{DVec3, Vec3};
 
 use microfacet_model::MicrofacetDistribution as _;
 use microfacet_model::{self as model, SignedSlope, VisibleSlope};
-use microfacet_sampler::lobe::Tabulated;
-use microfacet_sampler::{
-    Ggx, Lobe, Masking, MaterialError, MicrofacetDistribution as _, Skew, Tables,
-};
+use microfacet_sampler::lobe::{Batch, Reflecting, Tabulated};
+use microfacet_sampler::{Family, Ggx, Lobe, Masking, MaterialError, Skew, StudentT, Tables};
 use microfacet_tables::axis::half_tangent::half_tangent;
 
 use super::bsdfs::Bsdfs;
-use super::{Point, Report, direction};
+use super::per_hit::per_hit;
+use super::{Point, Region, Report, direction};
 
 /// Four ulp of a unit vector's components.
 pub(super) const ULP4: f64 = 4.0 * f32::EPSILON as f64;
@@ -21,6 +20,9 @@ const MODEL_EVERY: usize = 8;
 const COMPLETE_EVERY: usize = 4;
 /// One view in this many also tests batches, bounded normals, ellipsoids and albedo.
 const DERIVED_EVERY: usize = 4;
+
+/// Position in [`LOBES`](super::LOBES).
+const BOUND: usize = 0;
 
 /// The tilt towards the viewer in unit space.
 struct Tilt {
@@ -32,8 +34,10 @@ struct Tilt {
     rounding: f64,
 }
 
-pub(super) struct Checker<'a> {
-    pub(super) lobe: Lobe,
+pub(super) struct Checker<'a, L> {
+    pub(super) lobe: L,
+    /// Position in [`LOBES`](super::LOBES).
+    kind: usize,
     rises: bool,
     exact: model::StudentT,
     report: &'a mut Report,
@@ -43,13 +47,15 @@ pub(super) struct Checker<'a> {
 /// GGX also by its closed forms.
 pub(super) fn check(
     tables: &Tables,
+    family: Option<&Family>,
     sigma: [f32; 2],
     gamma: f64,
     views: Vec<Vec<Point>>,
     report: &mut Report,
 ) -> Result<(), MaterialError> {
     if gamma == 2.0 {
-        let mut checker = Checker::new(Ggx::new(sigma)?.into(), sigma, gamma, false, report)?;
+        let ggx = Lobe::from(Ggx::new(sigma)?);
+        let mut checker = Checker::new(ggx, BOUND, sigma, gamma, false, report)?;
         checker.views(&views);
         checker.complete(tables, &views);
     }
@@ -59,8 +65,12 @@ pub(super) fn check(
     let tabulated = tables.student_t(sigma, gamma)?;
     // A table whose heavy part is peeled holds less than all normals at grazing.
     let rises = tabulated.tabulated_share(Vec3::X) == 1.0;
-    let bounded = tabulated.clone().bounded();
-    let mut checker = Checker::new(tabulated.into(), sigma, gamma, rises, report)?;
+    let shape = tables.student_t(1.0, gamma)?;
+    per_hit(family, &shape, sigma, gamma, rises, &views, report)?;
+    let bounded = shape.bounded();
+    let lobe = Lobe::from(tabulated.clone());
+    let mut checker = Checker::new(lobe, BOUND, sigma, gamma, rises, report)?;
+    checker.tabulated_share(&tabulated, &views);
     checker.views(&views);
     checker.complete(tables, &views);
     // The matrix is arbitrary: `ellipsoids` replaces it.
@@ -70,7 +80,7 @@ pub(super) fn check(
     let albedos: Vec<_> =
         forms.iter().filter_map(|form| tables.albedo(sigma[0].into(), gamma, *form).ok()).collect();
     for points in views.iter().step_by(DERIVED_EVERY) {
-        checker.bounded(&bounded, points);
+        checker.bounded(bounded.with_roughness(sigma), points);
         checker.ellipsoids(&lobe, points);
         for albedo in &albedos {
             checker.albedo(albedo, &points[points.len() / 2]);
@@ -79,24 +89,7 @@ pub(super) fn check(
     Ok(())
 }
 
-impl<'a> Checker<'a> {
-    /// `rises`: whether the tilt towards the viewer rises with `u[0]` and is its quantile.
-    fn new(
-        lobe: Lobe,
-        sigma: [f32; 2],
-        gamma: f64,
-        rises: bool,
-        report: &'a mut Report,
-    ) -> Result<Self, MaterialError> {
-        let exact = model::StudentT::new(sigma, gamma).map_err(|_| MaterialError::Gamma(gamma))?;
-        Ok(Self { lobe, rises, exact, report })
-    }
-
-    /// σx and σy.
-    pub(super) fn sigma(&self) -> [f64; 2] {
-        [self.exact.sigma_x(), self.exact.sigma_y()]
-    }
-
+impl<'a> Checker<'a, Lobe> {
     /// Tests the BSDFs of the lobe at some views.
     fn complete(&mut self, tables: &Tables, views: &[Vec<Point>]) {
         let bsdfs = Bsdfs::new(&self.lobe, tables);
@@ -106,7 +99,34 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn views(&mut self, views: &[Vec<Point>]) {
+    fn tabulated_share(&mut self, lobe: &StudentT, views: &[Vec<Point>]) {
+        for points in views {
+            let share = lobe.tabulated_share(points[0].view());
+            self.share(share, "tabulated_share outside [0, 1]", &points[0]);
+        }
+    }
+}
+
+impl<'a, L: Reflecting + Tabulated + Batch> Checker<'a, L> {
+    /// `rises`: whether the tilt towards the viewer rises with `u[0]` and is its quantile.
+    pub(super) fn new(
+        lobe: L,
+        kind: usize,
+        sigma: [f32; 2],
+        gamma: f64,
+        rises: bool,
+        report: &'a mut Report,
+    ) -> Result<Self, MaterialError> {
+        let exact = model::StudentT::new(sigma, gamma).map_err(|_| MaterialError::Gamma(gamma))?;
+        Ok(Self { lobe, kind, rises, exact, report })
+    }
+
+    /// σx and σy.
+    pub(super) fn sigma(&self) -> [f64; 2] {
+        [self.exact.sigma_x(), self.exact.sigma_y()]
+    }
+
+    pub(super) fn views(&mut self, views: &[Vec<Point>]) {
         for (i, points) in views.iter().enumerate() {
             self.view(&points[0]);
             let mut last = f64::NEG_INFINITY;
@@ -123,7 +143,12 @@ impl<'a> Checker<'a> {
     }
 }
 
-impl Checker<'_> {
+impl<L: Reflecting + Tabulated + Batch> Checker<'_, L> {
+    /// The region of a point.
+    fn region(&mut self, at: &Point) -> &mut Region {
+        self.report.region(self.kind, at)
+    }
+
     /// Records a broken rule; `value` is the offending number.
     pub(super) fn require(
         &mut self,
@@ -133,7 +158,7 @@ impl Checker<'_> {
         at: &Point,
     ) {
         if !holds {
-            let violation = self.report.region(at).violations.entry(rule).or_default();
+            let violation = self.region(at).violations.entry(rule).or_default();
             violation.count += 1;
             violation.worst.see(value.into().abs(), at);
         }
@@ -165,9 +190,6 @@ impl Checker<'_> {
         self.require((g1 > 0.0) == (v.z > 0.0), "g1 = 0 above the horizon, or not below", g1, at);
         let lambda = self.lobe.lambda(v);
         self.require(lambda >= 0.0, "lambda negative or NaN", lambda, at);
-        if let Lobe::StudentT(lobe) = &self.lobe {
-            self.share(lobe.tabulated_share(v), "tabulated_share outside [0, 1]", at);
-        }
 
         let precise = v.as_dvec3();
         let truth = self.exact.g1(precise);
@@ -177,7 +199,7 @@ impl Checker<'_> {
         let raised = precise.with_z(if v.z < 0.0 { 0.0 } else { precise.z });
         let area = self.exact.inverse_area(raised);
         self.density(area, "model inverse_area negative, NaN or inf", at);
-        self.report.region(at).errors[0].see((g1 - truth).abs(), at);
+        self.region(at).errors[0].see((g1 - truth).abs(), at);
 
         for factor in [1.0 + 1e-6, 1.01, 1.5] {
             let theta = (at.theta * factor).min(std::f64::consts::PI);
@@ -196,7 +218,7 @@ impl Checker<'_> {
 
     /// Tests a sampled normal and its densities. `last` is the tilt at the previous random number.
     fn normal(&mut self, at: &Point, last: &mut f64) {
-        self.report.region(at).points += 1;
+        self.region(at).points += 1;
         let v = at.view();
         let m = Vec3::from(self.lobe.sample_visible_normal(v, at.u));
         self.unit_and_above(m, at);
@@ -225,7 +247,7 @@ impl Checker<'_> {
         for (i, (got, want)) in [d, pdf].into_iter().zip(truth).enumerate() {
             // Outside this range f32 cannot hold it; at the silhouette v·m is mostly rounding.
             if (1e-30..1e30).contains(&want) && (i == 0 || facing > 1e-3) {
-                self.report.region(at).errors[1 + i].see((f64::from(got) / want - 1.0).abs(), at);
+                self.region(at).errors[1 + i].see((f64::from(got) / want - 1.0).abs(), at);
             }
         }
     }
@@ -280,6 +302,6 @@ impl Checker<'_> {
         let (view, _) = self.exact.unit_view(v.with_z(v.z.max(0.0)).as_dvec3());
         let x = SignedSlope { w: shape.asinh_slope(tilt.slope.abs()), sign: tilt.slope.signum() };
         let cdf = VisibleSlope::new(shape, view).cdf(x);
-        self.report.region(at).errors[3].see((cdf - f64::from(at.u[0])).abs(), at);
+        self.region(at).errors[3].see((cdf - f64::from(at.u[0])).abs(), at);
     }
 }

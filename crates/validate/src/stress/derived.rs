@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use microfacet_sampler::albedo::Albedo;
-use microfacet_sampler::lobe::{Batch, Bounded};
+use microfacet_sampler::lobe::{Batch, BoundedRef, Reflecting, Tabulated};
 use microfacet_sampler::{Ellipsoid, Masking, MicrofacetDistribution, Skew};
 
 use super::checks::{Checker, ULP4};
@@ -12,7 +12,7 @@ use super::{Point, direction};
 /// Angles of the ellipsoids that are tried with the roughness of each material.
 const TURNS: [[f64; 3]; 2] = [[0.3, 0.0, 0.0], [0.7, -0.4, 2.0]];
 
-impl Checker<'_> {
+impl<L: Reflecting + Tabulated + Batch> Checker<'_, L> {
     /// Tests that a batch gives the same normals at one view.
     pub(super) fn batch(&mut self, points: &[Point]) {
         let v = points[0].view();
@@ -33,7 +33,7 @@ impl Checker<'_> {
     }
 
     /// Tests normals bounded for reflection at one view.
-    pub(super) fn bounded(&mut self, bounded: &Bounded, points: &[Point]) {
+    pub(super) fn bounded(&mut self, bounded: BoundedRef<'_>, points: &[Point]) {
         let bounded = bounded.at(points[0].view());
         let share = bounded.share();
         let sound = share > 0.0 && share <= 1.0;

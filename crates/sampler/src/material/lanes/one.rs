@@ -102,7 +102,7 @@ pub(crate) fn draw_along<S: Shape, const HEAVY: bool>(
     // Both random numbers in two lanes: fourth roots, cells and positions.
     let (mut along, mut tail) = (u[0], None);
     if HEAVY && shape.peeled() {
-        match Part::of(along, shape.share(at.to_array()[0])) {
+        match shape.part(along, at.to_array()[0]) {
             Part::Tabulated(number) => along = number,
             Part::Heavy(number) => tail = Some(number),
         }
