@@ -39,7 +39,7 @@ fn sum(normals: impl Iterator<Item = [f32; 3]>) -> Vec3 {
 
 #[library_benchmark]
 #[bench::common(args = (2.5), setup = Inputs::new, config = at_most(190.6))]
-#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(324.4))]
+#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(268.8))]
 fn sample_visible_normal(inputs: Inputs<StudentT>) -> (Vec3, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (sum(calls.map(|(v, u)| inputs.lobe.sample_visible_normal(*v, *u))), inputs)
@@ -59,8 +59,8 @@ fn roughness(u: &[f32; 2]) -> [f32; 2] {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(0.0))]
-#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(0.0))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(215.6))]
+#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(294.4))]
 fn sample_with_roughness(inputs: Inputs<StudentT>) -> (Vec3, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     let one = |(v, u): (&Vec3, &[f32; 2])| {
@@ -70,8 +70,8 @@ fn sample_with_roughness(inputs: Inputs<StudentT>) -> (Vec3, Inputs<StudentT>) {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = microfacet_guard::family, config = at_most(0.0))]
-#[bench::heavy(args = (1.6), setup = microfacet_guard::family, config = at_most(0.0))]
+#[bench::common(args = (2.5), setup = microfacet_guard::family, config = at_most(438.1))]
+#[bench::heavy(args = (1.6), setup = microfacet_guard::family, config = at_most(529.5))]
 fn sample_of_family((family, gamma, inputs): Hits) -> (Vec3, Hits) {
     let calls = inputs.v.iter().zip(&inputs.u);
     let one = |(v, u): (&Vec3, &[f32; 2])| {
@@ -81,7 +81,7 @@ fn sample_of_family((family, gamma, inputs): Hits) -> (Vec3, Hits) {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = microfacet_guard::family, config = at_most(0.0))]
+#[bench::common(args = (2.5), setup = microfacet_guard::family, config = at_most(164.2))]
 fn g1_of_family((family, gamma, inputs): Hits) -> (f32, Hits) {
     let calls = inputs.v.iter().zip(&inputs.u);
     let one =
@@ -104,14 +104,14 @@ fn g1_batch(mut inputs: Inputs<StudentT>) -> Inputs<StudentT> {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(73.1))]
-#[bench::power_law(args = (40.0), setup = Inputs::new, config = at_most(95.1))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(80.1))]
+#[bench::power_law(args = (40.0), setup = Inputs::new, config = at_most(83.1))]
 fn d(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
     (black_box(inputs.m.iter().map(|m| black_box(inputs.lobe.d(*m))).sum()), inputs)
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(151.1))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(129.1))]
 fn visible_normal_pdf(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.m);
     (black_box(calls.map(|(v, m)| black_box(inputs.lobe.visible_normal_pdf(*v, *m))).sum()), inputs)
@@ -150,7 +150,7 @@ fn ellipsoid_g1(inputs: Inputs<Ellipsoid>) -> (f32, Inputs<Ellipsoid>) {
 }
 
 #[library_benchmark]
-#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(726.8))]
+#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(727.6))]
 fn ellipsoid_sample_visible_normal(inputs: Inputs<Ellipsoid>) -> (Vec3, Inputs<Ellipsoid>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (sum(calls.map(|(v, u)| inputs.lobe.sample_visible_normal(*v, *u))), inputs)
@@ -180,8 +180,8 @@ fn ggx_sample_visible_normal(inputs: Inputs<Ggx>) -> (Vec3, Inputs<Ggx>) {
 type Conductors = (Conductor<StudentT>, Inputs<StudentT>);
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(358.1))]
-#[bench::heavy(args = (1.6), setup = microfacet_guard::conductor, config = at_most(462.6))]
+#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(351.8))]
+#[bench::heavy(args = (1.6), setup = microfacet_guard::conductor, config = at_most(398.5))]
 fn conductor_sample((conductor, inputs): Conductors) -> (f32, Conductors) {
     let calls = inputs.v.iter().zip(&inputs.u);
     let one = |(v, u): (&Vec3, &[f32; 2])| {
@@ -192,8 +192,8 @@ fn conductor_sample((conductor, inputs): Conductors) -> (f32, Conductors) {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(402.2))]
-#[bench::heavy(args = (1.6), setup = microfacet_guard::conductor, config = at_most(491.4))]
+#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(407.5))]
+#[bench::heavy(args = (1.6), setup = microfacet_guard::conductor, config = at_most(434.2))]
 fn conductor_sample_with_pdf((conductor, inputs): Conductors) -> (f32, Conductors) {
     let calls = inputs.v.iter().zip(&inputs.u);
     let one = |(v, u): (&Vec3, &[f32; 2])| {

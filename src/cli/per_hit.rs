@@ -73,10 +73,10 @@ fn in_order(reports: &[Report]) -> Vec<&Report> {
     all
 }
 
-/// The shapes of a mixture, in words; the family's largest finite γ stands for infinity.
+/// The shapes of a mixture, in words.
 fn range(report: &Report) -> String {
     let [low, high] = report.gammas;
-    if high >= 1e18 { format!("[{low}, inf]") } else { format!("[{low}, {high}]") }
+    format!("[{low}, {high}]")
 }
 
 /// Of all mixtures.

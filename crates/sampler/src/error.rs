@@ -33,6 +33,10 @@ pub enum MaterialError {
     },
     /// The set has no tables over a range of γ, as [`Tables::family`](crate::Tables::family) reads.
     NoRange,
+    /// The set has albedos of single materials alone, none over a range of σ, as
+    /// [`Tables::family_albedo`](crate::Tables::family_albedo) and
+    /// [`Tables::shape_albedo`](crate::Tables::shape_albedo) read.
+    NoAlbedoRange,
     /// The set has no albedo tables for this form of masking.
     MaskingNotCovered {
         /// The form asked for.
@@ -164,6 +168,12 @@ impl fmt::Display for MaterialError {
                 "the set has no tables over a range of gamma, from which lobes of any gamma are \
                  read: bake a material whose gamma is a range, such as \
                  gamma = { min = 1.6, max = \"inf\" }, or use `student_t` for the shapes that it has",
+            ),
+            Self::NoAlbedoRange => f.write_str(
+                "the set has no albedos over a range of sigma, from which those of any sigma are \
+                 read: bake a material whose sigma is a range and that has a fresnel, such as \
+                 sigma = { min = 0.05, max = 1 }, fresnel = \"mirror\", or use `albedo` for the \
+                 materials that it has",
             ),
             Self::MaskingNotCovered { masking, other: Some(other) } => {
                 write!(f, "this set has no albedo tables for {masking} masking, only for {other}")

@@ -76,9 +76,15 @@ impl Tables {
         }
         let tables = |masking| self.moments(Kind::Albedo, masking);
         let mut of_shape = tables(masking).filter(|table| table.subject.lobe.contains_shape(gamma));
-        of_shape
-            .find_map(|table| ShapeAlbedo::of(table, gamma))
-            .ok_or_else(|| not_covered(tables, masking, [f64::NAN, gamma]))
+        of_shape.find_map(|table| ShapeAlbedo::of(table, gamma)).ok_or_else(|| {
+            match no_range(tables, masking) {
+                MaterialError::NoAlbedoRange => MaterialError::NotCovered {
+                    gamma,
+                    nearest: nearest_shapes(tables(masking), gamma),
+                },
+                why => why,
+            }
+        })
     }
 
     /// The directional albedo at every σ and γ, for one form of masking.
@@ -95,9 +101,12 @@ impl Tables {
             let [least, most]: [f64; 2] = table.subject.lobe.gamma.into();
             s_of_gamma(least) - s_of_gamma(most)
         };
+        let of_roughness = |table: &&Table| smallest_sigma(table).is_some();
         // The first among equals.
-        let widest = tables(masking).reduce(|a, b| if width(b) > width(a) { b } else { a });
-        widest.and_then(FamilyAlbedo::of).ok_or_else(|| not_covered(tables, masking, [f64::NAN; 2]))
+        let widest = tables(masking)
+            .filter(of_roughness)
+            .reduce(|a, b| if width(b) > width(a) { b } else { a });
+        widest.and_then(FamilyAlbedo::of).ok_or_else(|| no_range(tables, masking))
     }
 
     /// The albedo with F = 1 of a named material, and its moments, for the form of masking of its
@@ -261,6 +270,34 @@ impl Tables {
             .find_map(|table| read(table, &point))
             .ok_or_else(|| not_covered(tables, masking, [sigma, gamma]))
     }
+}
+
+/// The error where no table of moments is over roughnesses.
+fn no_range<'a, I: Iterator<Item = &'a Table>>(
+    tables: impl Fn(Masking) -> I,
+    masking: Masking,
+) -> MaterialError {
+    let has = |masking: &Masking| tables(*masking).next().is_some();
+    if has(&masking) {
+        return MaterialError::NoAlbedoRange;
+    }
+    let other = Masking::ALL.into_iter().find(has);
+    MaterialError::MaskingNotCovered { masking, other }
+}
+
+/// The nearest γ below and above of tables over roughnesses.
+fn nearest_shapes<'a>(tables: impl Iterator<Item = &'a Table>, gamma: f64) -> [Option<f64>; 2] {
+    let ends = tables.filter(|table| smallest_sigma(table).is_some()).flat_map(|table| {
+        let ends: [f64; 2] = table.subject.lobe.gamma.into();
+        ends
+    });
+    ends.fold([None, None], |[below, above], end| {
+        if end < gamma {
+            [Some(below.map_or(end, |below: f64| below.max(end))), above]
+        } else {
+            [below, Some(above.map_or(end, |above: f64| above.min(end)))]
+        }
+    })
 }
 
 /// The error where no table of moments covers (σ, γ); it says what the tables cover.

@@ -8,7 +8,7 @@ macro_rules! lobe_of_surface {
         impl MicrofacetDistribution for $lobe {
             /// D(m), with a relative error of up to 3e-7 (2 + γ) for γ ≤ 16. For larger γ, where
             /// the cosine times σ is below 1e-19, and for lobes of a family, it is a few ulp times
-            /// its exponent (about 1e-6 times |ln D σxσy|).
+            /// one plus its exponent (about 2e-6 times 1 + |ln D σxσy|).
             ///
             /// For γ < 2 D grows without limit towards the horizon and overflows to `f32::MAX`, not
             /// to ∞.

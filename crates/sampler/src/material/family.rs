@@ -63,7 +63,6 @@ pub struct Family {
 #[derive(Clone, Copy, Debug)]
 pub struct FamilyLobe<'a> {
     surface: Surface<AtShape<'a>>,
-    gamma: f32,
 }
 
 impl Family {
@@ -74,14 +73,14 @@ impl Family {
         let Some(last) = parts.last() else {
             return Err(MaterialError::NoRange);
         };
-        let seam = if parts.len() > 1 { parts[0].gammas[0] } else { last.gammas[1] };
+        let seam = if parts.len() > 1 { parts[0].gammas[0] } else { last.gammas[1] } as f32;
         Ok(Self { seam, parts })
     }
 
     /// The lobe of roughness σ, one number or a pair for x and y, and shape γ.
     ///
-    /// σ is clamped to [1e-8, 1e6] and γ to [what the tables hold](Self::gammas); NaN is taken to
-    /// the lower end. What is very smooth is
+    /// σ is clamped to [1e-8, 1e6] and γ to [what the tables hold](Self::gammas), in a gap between
+    /// two ranges to the lower one; NaN is taken to the lower end. What is very smooth is
     /// [a mirror](MicrofacetDistribution::is_effectively_smooth).
     #[inline(always)]
     #[must_use]
@@ -91,12 +90,12 @@ impl Family {
         let part = &self.parts[small];
         let gamma = part.clamped(gamma);
         let surface = Surface::new(AtShape::new(part, gamma), clamped(sigma.into()));
-        FamilyLobe { surface, gamma }
+        FamilyLobe { surface }
     }
 
     /// The shapes γ that are read from tables, as ranges [smallest, largest], of falling γ: in the
     /// default set [1.8, ∞] and [1.501, 1.8].
-    pub fn gammas(&self) -> impl Iterator<Item = [f32; 2]> + '_ {
+    pub fn gammas(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         self.parts.iter().map(|part| part.gammas)
     }
 
@@ -165,8 +164,8 @@ impl<'a> FamilyLobe<'a> {
 
     /// The shape γ.
     #[must_use]
-    pub fn gamma(&self) -> f32 {
-        self.gamma
+    pub fn gamma(&self) -> f64 {
+        self.surface.shape.gamma()
     }
 
     #[inline(always)]
@@ -179,12 +178,12 @@ lobe_of_surface!(FamilyLobe<'_>);
 
 impl Tabulated for FamilyLobe<'_> {
     fn key(&self) -> LobeKey {
-        LobeKey::of_family(self.sigma(), f64::from(self.gamma))
+        LobeKey::of_family(self.sigma(), self.gamma())
     }
 
     #[inline]
     fn has_pole(&self) -> bool {
-        self.gamma < 2.0
+        self.gamma() < 2.0
     }
 
     fn bytes(&self) -> usize {
@@ -207,7 +206,7 @@ mod tests {
             // Evenly in the logarithm of 2γ − 3.
             let gamma = 1.5 + 0.001 * 299_f32.powf(i as f32 / 299.0);
             let lobe = family.at(1.0, gamma);
-            let bound = tables.student_t(1.0, f64::from(lobe.gamma())).unwrap();
+            let bound = tables.student_t(1.0, lobe.gamma()).unwrap();
             for j in 0..=2000 {
                 let at = bound.slices.rows as f32 * (j as f32 / 2000.0);
                 let off = lobe.surface.shape.share(at) - bound.slices.heavy.share(at);

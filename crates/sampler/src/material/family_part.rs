@@ -1,7 +1,5 @@
 //! The tables of a [`Family`](super::family::Family), and one γ of them as lookups read it.
 
-use core::array::from_fn;
-
 use microfacet_core::math::sqrt;
 use microfacet_core::shape::{S_END, gamma_of_s};
 use microfacet_tables::axis::half_tangent::Lines;
@@ -25,8 +23,9 @@ const LARGEST: f64 = 1e18;
 /// The tables of the shapes of one kind of in-plane slopes, whole or peeled.
 #[derive(Clone, Debug)]
 pub(crate) struct Part {
-    /// The smallest and the largest γ.
-    pub(super) gammas: [f32; 2],
+    /// The smallest and the largest γ; the largest that lookups take, finite, is apart.
+    pub(super) gammas: [f64; 2],
+    range: [f32; 2],
     /// Of in-plane slopes, of slopes across and of G1.
     windows: Windows<3>,
     /// In-plane slopes, as in [`Slices`].
@@ -117,7 +116,8 @@ impl Part {
         };
         let peeled = slope.kind == Kind::VisibleSlopePeeled;
         Self {
-            gammas: [range[1], range[0]].map(|s| gamma_of_s(s).min(LARGEST) as f32),
+            gammas: [range[1], range[0]].map(gamma_of_s),
+            range: [range[1], range[0]].map(|s| gamma_of_s(s).min(LARGEST) as f32),
             windows,
             slopes,
             lines: view.lines(rows as f32),
@@ -144,10 +144,16 @@ impl Part {
     /// γ within the range, NaN at its lower end; finite.
     #[inline(always)]
     pub(super) fn clamped(&self, gamma: f32) -> f32 {
-        let [low, high] = self.gammas;
+        let [low, high] = self.range;
         // Each comparison is one instruction, unlike `max` and `min`, and false for NaN.
         let gamma = if gamma > low { gamma } else { low };
         if gamma < high { gamma } else { high }
+    }
+
+    /// A clamped γ in double precision, in which an end that was rounded outwards is that end.
+    pub(super) fn exact(&self, gamma: f32) -> f64 {
+        let [low, high] = self.gammas;
+        if gamma >= LARGEST as f32 { high } else { f64::from(gamma).clamp(low, high) }
     }
 
     pub(super) fn bytes(&self) -> usize {
@@ -197,6 +203,10 @@ impl<'a> AtShape<'a> {
 
     pub(super) fn bytes(self) -> usize {
         self.part.bytes()
+    }
+
+    pub(super) fn gamma(self) -> f64 {
+        self.part.exact(self.gamma)
     }
 
     /// The area of the heavy part and the rest, at a view coordinate in rows; NaN for NaN.
@@ -269,13 +279,12 @@ impl<'a> Shape for AtShape<'a> {
     #[inline(always)]
     fn across(self, cell: usize, w: f32) -> f32 {
         let pair = self.part.across.pair(self.across, cell);
-        sum(pair * basis(f32x4::splat(w))).to_array()[0]
+        pair.map_or(f32::NAN, |pair| sum(pair * basis(f32x4::splat(w))).to_array()[0])
     }
 
     #[inline(always)]
     fn across_lanes(self, cells: [i32; LANES], w: f32x4) -> f32x4 {
-        let pair = |i: usize| self.part.across.pair(self.across, cells[i] as u32 as usize);
-        hermite_lanes(f32x4::transpose(from_fn(pair)), w)
+        hermite_lanes(self.part.across.pairs(self.across, cells), w)
     }
 
     #[inline(always)]
@@ -319,7 +328,7 @@ impl<'a> Shape for AtShape<'a> {
 
     #[inline(always)]
     fn masking_cell(self, cell: usize) -> Option<f32x4> {
-        Some(self.part.masking.pair(self.masking, cell))
+        self.part.masking.pair(self.masking, cell)
     }
 
     #[inline(always)]
@@ -330,7 +339,9 @@ impl<'a> Shape for AtShape<'a> {
 
     #[inline(always)]
     fn masking_of_two(self, cells: [usize; 2], w: f32x4) -> Option<f32x4> {
-        let [a, b] = cells.map(|cell| self.part.masking.pair(self.masking, cell));
+        let [a, b] = cells;
+        let a = self.part.masking.pair(self.masking, a)?;
+        let b = self.part.masking.pair(self.masking, b)?;
         // Lanes [v0, v0, …] of both, and so on, by one transposition.
         let nodes = f32x4::transpose([a, b, a, b]);
         Some(hermite_lanes(nodes, w))
@@ -338,13 +349,12 @@ impl<'a> Shape for AtShape<'a> {
 
     #[inline(always)]
     fn masking_lanes(self, cells: [i32; LANES], w: f32x4) -> f32x4 {
-        let pair = |i: usize| self.part.masking.pair(self.masking, cells[i] as u32 as usize);
-        hermite_lanes(f32x4::transpose(from_fn(pair)), w)
+        hermite_lanes(self.part.masking.pairs(self.masking, cells), w)
     }
 
     #[inline(always)]
     fn first_moment(self) -> f32 {
-        let [first, ..] = self.part.masking.pair(self.masking, 0).to_array();
+        let first = self.part.masking.pair(self.masking, 0).map_or(f32::NAN, |x| x.to_array()[0]);
         self.kappa / (first * self.part.masking_cells)
     }
 

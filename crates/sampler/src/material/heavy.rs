@@ -126,6 +126,8 @@ impl Part {
         if u * whole > rest {
             Self::Heavy(((1.0 - u) * whole / heavy).min(1.0))
         } else {
+            // Not 0/0 for u = 0 where all of the area is heavy, by rounding.
+            let rest = if rest > 0.0 { rest } else { f32::MIN_POSITIVE };
             Self::Tabulated((u * whole / rest).min(1.0))
         }
     }

@@ -150,21 +150,23 @@ impl<T: Copy + Default> Planes<T> {
     /// The values of a window at a place; `None` where there is no such place.
     #[inline(always)]
     fn at(&self, window: Window, place: usize) -> Option<&[T; FOUR]> {
-        let start = self.start(window, place);
+        let start = self.start(window, place)?;
         self.values.get(start..start.wrapping_add(FOUR))?.first_chunk()
     }
 
     /// The values of a window at a place and the next, by one test.
     #[inline(always)]
     fn two(&self, window: Window, place: usize) -> Option<[&[T; FOUR]; 2]> {
-        let start = self.start(window, place);
+        let start = self.start(window, place)?;
         let both = self.values.get(start..start.wrapping_add(self.shapes + FOUR))?;
         Some([both.first_chunk()?, both.last_chunk()?])
     }
 
     #[inline(always)]
-    fn start(&self, window: Window, place: usize) -> usize {
-        place.wrapping_mul(self.shapes).wrapping_add(window.start as usize)
+    fn start(&self, window: Window, place: usize) -> Option<usize> {
+        // In 64 bits: the place that NaN gives would come round to 0 in 32.
+        let start = (place as u64).wrapping_mul(self.shapes as u64) + u64::from(window.start);
+        usize::try_from(start).ok()
     }
 
     #[inline(always)]
@@ -181,11 +183,17 @@ impl<T: Copy + Default> Planes<T> {
 const NONE: f32x4 = f32x4::splat(f32::NAN);
 
 impl Planes<Node> {
-    /// (value, slope) at a place and the next.
+    /// (value, slope) at a place and the next; `None` where there are none.
     #[inline(always)]
-    pub(super) fn pair(&self, window: Window, place: usize) -> f32x4 {
-        let Some(nodes) = self.two(window, place) else { return NONE };
-        combined(nodes.map(|nodes| window.halves(nodes)))
+    pub(super) fn pair(&self, window: Window, place: usize) -> Option<f32x4> {
+        Some(combined(self.two(window, place)?.map(|nodes| window.halves(nodes))))
+    }
+
+    /// [`pair`](Self::pair) of four places, in lanes; NaN where there are none.
+    #[inline(always)]
+    pub(super) fn pairs(&self, window: Window, places: [i32; 4]) -> [f32x4; 4] {
+        let pair = |place| self.pair(window, place as u32 as usize).unwrap_or(NONE);
+        f32x4::transpose(places.map(pair))
     }
 
     /// [`pair`](Self::pair), linear in w between a place and another.
@@ -255,9 +263,12 @@ mod tests {
                 assert!((got - want).abs() < 1e-6, "{s} of {nodes:?}: {got} for {want}");
             }
         }
-        // Out of range, and NaN, end at some cell.
-        for r in [f32::NEG_INFINITY, f32::INFINITY, f32::NAN] {
-            assert!(windows.at(r).into_iter().all(|window| (window.start as usize) < even.len()));
+        // Just out of range, by rounding, the last cells go on; NaN gives no weights.
+        for s in [range[0] - 1e-7, range[1] + 1e-7] {
+            for window in windows.at((S_END - s) as f32) {
+                assert!((window.weights.to_array().iter().sum::<f32>() - 1.0).abs() < 1e-5);
+            }
         }
+        assert!(windows.at(f32::NAN).iter().all(|window| window.weights.is_nan().all()));
     }
 }

@@ -57,14 +57,9 @@ fn gammas() -> Vec<f32> {
     gammas
 }
 
-/// γ as a bound lobe takes it: the family reads 1.8, rounded down, from the tables of 1.8.
-fn bound_gamma(gamma: f32) -> f64 {
-    if gamma == 1.8 { 1.8 } else { f64::from(gamma) }
-}
-
 /// The bound lobe of the same σ and γ, and the model's.
 fn bound(tables: &Tables, lobe: &FamilyLobe) -> (StudentT, model::StudentT) {
-    let (sigma, gamma) = (lobe.sigma(), bound_gamma(lobe.gamma()));
+    let (sigma, gamma) = (lobe.sigma(), lobe.gamma());
     let truth = model::StudentT::new(sigma.map(f64::from), gamma).unwrap();
     (tables.student_t(sigma, gamma).unwrap(), truth)
 }

@@ -45,7 +45,7 @@ fn tilts_rise_with_the_numbers() {
     for gamma in gammas {
         let lobe = family.at(1.0, gamma);
         let (bound, _) = bound(&tables, &lobe);
-        let s = s_of_gamma(f64::from(lobe.gamma()));
+        let s = s_of_gamma(lobe.gamma());
         for z in [1.0, 0.99, random.random(), random.random(), 0.02, 0.0] {
             let v = view(z, 0.0);
             let other: f32 = random.random();

@@ -30,8 +30,8 @@ pub(super) struct Hit {
 }
 
 impl Mixture {
-    pub(super) fn new([low, high]: [f32; 2]) -> Self {
-        Self { s: [high, low].map(|gamma| s_of_gamma(f64::from(gamma))) }
+    pub(super) fn new([low, high]: [f64; 2]) -> Self {
+        Self { s: [high, low].map(s_of_gamma) }
     }
 
     /// Random places of s and of σx.

@@ -53,7 +53,7 @@ pub struct Options {
 #[derive(Clone, Debug)]
 pub struct Report {
     /// The smallest and the largest γ drawn.
-    pub gammas: [f32; 2],
+    pub gammas: [f64; 2],
     /// Polar angle of all views, radians; their azimuths are drawn.
     pub theta: f64,
     /// χ² of the CDFs along the plane of incidence and across it.
@@ -77,7 +77,7 @@ impl Judged for Report {
 }
 
 /// The mixtures that a run draws: each range of γ at each elevation of the view.
-fn mixtures(family: &Family) -> Vec<([f32; 2], f64)> {
+fn mixtures(family: &Family) -> Vec<([f64; 2], f64)> {
     family.gammas().flat_map(|gammas| THETAS.map(|theta| (gammas, theta))).collect()
 }
 
@@ -106,7 +106,7 @@ pub fn run(
 fn run_some(
     tables: &Tables,
     family: &Family,
-    mixtures: &[([f32; 2], f64)],
+    mixtures: &[([f64; 2], f64)],
     options: Options,
     stage: &Stage,
 ) -> Result<Outcome<Report>, MaterialError> {
@@ -191,7 +191,7 @@ impl Test<'_> {
     /// The model's lobe of a hit, with the numbers that the family takes for it.
     fn truth(&self, hit: &Hit) -> Result<model::StudentT, MaterialError> {
         let lobe = self.family.at(hit.sigma, hit.gamma);
-        let gamma = f64::from(lobe.gamma()) * self.options.gamma_factor;
+        let gamma = lobe.gamma() * self.options.gamma_factor;
         let sigma = lobe.sigma().map(|sigma| f64::from(sigma) * self.options.sigma_factor);
         model::StudentT::new(sigma, gamma).map_err(|_| match gamma > 1.5 {
             true => MaterialError::Sigma { sigma: sigma[0], range: [0.0, f64::MAX] },

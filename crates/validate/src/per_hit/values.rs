@@ -88,7 +88,7 @@ impl Test<'_> {
             let v = direction(self.theta, hit.phi);
             let u = [self.random.random(), self.random.random()];
             let (lobe, truth) = (self.family.at(hit.sigma, hit.gamma), self.truth(&hit)?);
-            let (sigma, gamma) = (lobe.sigma(), f64::from(lobe.gamma()));
+            let (sigma, gamma) = (lobe.sigma(), lobe.gamma());
             let at = Point { sigma, gamma, theta: self.theta, phi: hit.phi, u };
             let m = Vec3::from(lobe.sample_visible_normal(v, u));
             let (exact_v, exact_m) = (v.as_dvec3(), m.as_dvec3());

@@ -27,7 +27,7 @@ pub(super) fn per_hit(
     let Some(family) = family else { return Ok(()) };
     // γ as single precision has it; a range that the family does not read is not tested.
     let lobe = family.at(sigma, gamma as f32);
-    let taken = f64::from(lobe.gamma());
+    let taken = lobe.gamma();
     if (taken - gamma).abs() > 1e-6 * gamma && gamma < 1e18 {
         return Ok(());
     }

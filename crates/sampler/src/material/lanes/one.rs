@@ -86,7 +86,7 @@ pub(crate) fn draw<S: Shape, const HEAVY: bool>(
     Some(if HEAVY { (m * shrink).fast_max(lowest) } else { m })
 }
 
-/// The normal of [`draw`](Self::draw) before `to_tangent`, with squares in range, and a factor
+/// The normal of [`draw`] before `to_tangent`, with squares in range, and a factor
 /// on the normal after normalisation.
 #[inline(always)]
 pub(crate) fn draw_along<S: Shape, const HEAVY: bool>(
