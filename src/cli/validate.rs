@@ -82,7 +82,7 @@ pub(super) fn run(args: &Args) -> Outcome {
     if args.per_hit {
         let family = set.family()?;
         let factor = args.perturb_gamma;
-        perturbed(family.gammas().map(|[low, _]| f64::from(low)), factor)?;
+        perturbed(family.gammas().map(|[low, _]| low), factor)?;
         let (samples, seed) = (args.samples, args.seed);
         let options = per_hit::Options { samples, seed, gamma_factor: factor, sigma_factor: 1.0 };
         let source = source.map_or(String::new(), |path| format!(" --tables {path}"));
