@@ -209,6 +209,17 @@ impl<'a> AtShape<'a> {
         self.part.exact(self.gamma)
     }
 
+    /// [`areas`](Self::areas) at four views.
+    #[inline(always)]
+    fn areas_of_four(self, at: f32x4) -> [f32x4; 2] {
+        let (cells, w) = cell_of_share(at);
+        let cells = cells.to_array().map(|cell| cell as u32 as usize);
+        let rests = cells.map(|cell| f32x4::new(self.part.rests.cell(self.masking, cell)));
+        let rhos =
+            cells.map(|cell| f32x4::new(self.part.rhos.get(cell).copied().unwrap_or_default()));
+        [rhos, rests].map(|cells| cubic_lanes(f32x4::transpose(cells), w))
+    }
+
     /// The area of the heavy part and the rest, at a view coordinate in rows; NaN for NaN.
     #[inline(always)]
     fn areas(self, at: f32) -> [f32; 2] {
@@ -302,13 +313,14 @@ impl<'a> Shape for AtShape<'a> {
 
     #[inline(always)]
     fn shares(self, at: f32x4) -> f32x4 {
-        let (cells, w) = cell_of_share(at);
-        let cells = cells.to_array().map(|cell| cell as u32 as usize);
-        let rests = cells.map(|cell| f32x4::new(self.part.rests.cell(self.masking, cell)));
-        let rhos =
-            cells.map(|cell| f32x4::new(self.part.rhos.get(cell).copied().unwrap_or_default()));
-        let [rho, rest] = [rhos, rests].map(|cells| cubic_lanes(f32x4::transpose(cells), w));
-        rho / (rho + rest)
+        let [heavy, rest] = self.areas_of_four(at);
+        heavy / (heavy + rest)
+    }
+
+    #[inline(always)]
+    fn parts(self, u: f32x4, at: f32x4) -> [f32x4; 2] {
+        let [heavy, rest] = self.areas_of_four(at);
+        heavy::parts_of_areas(u, heavy, rest)
     }
 
     #[inline(always)]

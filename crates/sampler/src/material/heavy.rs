@@ -145,6 +145,18 @@ pub(crate) fn parts(u: f32x4, share: f32x4) -> [f32x4; 2] {
     [unit(heavy.select(1.0 - u, u) / heavy.select(share, rest)), heavy]
 }
 
+/// [`Part::of_areas`] of four numbers, as [`parts`].
+#[inline(always)]
+pub(crate) fn parts_of_areas(u: f32x4, heavy: f32x4, rest: f32x4) -> [f32x4; 2] {
+    let u = (u & u.simd_gt(0.0)).fast_min(f32x4::ONE);
+    let whole = heavy + rest;
+    let is_heavy = (u * whole).simd_gt(rest);
+    let least = f32x4::splat(f32::MIN_POSITIVE);
+    let rest = rest.simd_gt(0.0).select(rest, least);
+    let number = is_heavy.select(1.0 - u, u) * whole / is_heavy.select(heavy, rest);
+    [number.fast_min(f32x4::ONE), is_heavy]
+}
+
 #[cfg(test)]
 mod tests {
     use glam::Vec3;

@@ -16,7 +16,7 @@ use microfacet_tables::axis::hermite::split;
 use wide::f32x4;
 
 use super::distribution::{Facet, GRAZING, SMOOTH, SMOOTH_MASKED, visible_density};
-use super::heavy::{Part, Tail};
+use super::heavy::{Part, Tail, parts};
 
 /// Directions that lookups take at once.
 pub(crate) const LANES: usize = 4;
@@ -57,6 +57,11 @@ pub(crate) trait Shape: Copy {
     #[inline(always)]
     fn part(self, u: f32, at: f32) -> Part {
         Part::of(u, self.share(at))
+    }
+    /// The same of four numbers: the numbers, and all ones where the part is the heavy one.
+    #[inline(always)]
+    fn parts(self, u: f32x4, at: f32x4) -> [f32x4; 2] {
+        parts(u, self.shares(at))
     }
     fn tail(self) -> Tail;
 

@@ -18,7 +18,6 @@ use microfacet_tables::axis::roots;
 
 use super::one::{least_clear, start};
 use super::views::Views;
-use crate::material::heavy::parts;
 use crate::material::horizon::HORIZON;
 use crate::material::surface::{LANES, Shape, Surface};
 use crate::vector::vec3;
@@ -91,11 +90,8 @@ impl<S: Shape> Surface<S> {
         let Views { rho, z, length, .. } = views;
         let [at, silhouette] = shape.place::<HEAVY>(rho, z, length);
         let (row, between) = split(at);
-        let [number, heavy] = if HEAVY && shape.peeled() {
-            parts(u[0], shape.shares(at))
-        } else {
-            [u[0], f32x4::ZERO]
-        };
+        let [number, heavy] =
+            if HEAVY && shape.peeled() { shape.parts(u[0], at) } else { [u[0], f32x4::ZERO] };
         let scales = shape.scales();
         let along = Number::new(number, scales[0]);
         let across = Number::new(u[1], scales[1]);
