@@ -1,5 +1,7 @@
 //! The tables of a [`Family`](super::family::Family), and one γ of them as lookups read it.
 
+use alloc::vec::Vec;
+
 use microfacet_core::math::sqrt;
 use microfacet_core::shape::{S_END, gamma_of_s};
 use microfacet_tables::axis::half_tangent::Lines;
