@@ -21,7 +21,7 @@ use microfacet_tables::axis::hermite::split;
 use wide::f32x4;
 
 use super::batch::Batch;
-use super::delegate::lobe_by_reference;
+use super::delegate::{by_ref, forward};
 use super::distribution::{Facet, MicrofacetDistribution};
 use super::key::LobeKey;
 use super::lanes::first_three;
@@ -332,54 +332,16 @@ impl<'a> BoundedRef<'a> {
     }
 }
 
-/// As the lobe, except for the normals that are drawn for reflection.
-impl MicrofacetDistribution for BoundedRef<'_> {
-    #[inline(always)]
-    fn d(&self, m: impl Into<[f32; 3]>) -> f32 {
-        self.lobe.d(m)
-    }
-
-    #[inline(always)]
-    fn g1(&self, v: impl Into<[f32; 3]>) -> f32 {
-        self.lobe.g1(v)
-    }
-
-    #[inline(always)]
-    fn sample_visible_normal(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> [f32; 3] {
-        self.lobe.sample_visible_normal(v, u)
-    }
-
-    #[inline(always)]
-    fn visible_normal_pdf(&self, v: impl Into<[f32; 3]>, m: impl Into<[f32; 3]>) -> f32 {
-        self.lobe.visible_normal_pdf(v, m)
-    }
-
-    #[inline(always)]
-    fn reflection_weight(
-        &self,
-        v: impl Into<[f32; 3]>,
-        l: impl Into<[f32; 3]>,
-        masking: Masking,
-    ) -> f32 {
-        self.lobe.reflection_weight(v, l, masking)
-    }
-
-    #[inline(always)]
-    fn facet(
-        &self,
-        v: impl Into<[f32; 3]>,
-        m: impl Into<[f32; 3]>,
-        l: impl Into<[f32; 3]>,
-        masking: Masking,
-    ) -> Facet {
-        self.lobe.facet(v, m, l, masking)
-    }
-
-    #[inline(always)]
-    fn is_effectively_smooth(&self) -> bool {
-        self.lobe.is_effectively_smooth()
-    }
+macro_rules! unbounded {
+    ($bounded:ident, $one:ident => $call:expr) => {{
+        let $one = $bounded.lobe;
+        $call
+    }};
 }
+
+forward!(#[inline(always)] Bounded, by_ref: MicrofacetDistribution, Reflecting, Tabulated, Batch);
+// As the lobe, except for the normals that are drawn for reflection.
+forward!(#[inline(always)] BoundedRef<'_>, unbounded: MicrofacetDistribution, Batch);
 
 impl Reflecting for BoundedRef<'_> {
     #[inline(always)]
@@ -412,27 +374,6 @@ impl Tabulated for BoundedRef<'_> {
         self.lobe.bytes() + size_of_val(self.limits)
     }
 }
-
-impl Batch for BoundedRef<'_> {
-    fn sample_batch<V: Copy + Into<[f32; 3]>, M: From<[f32; 3]>>(
-        &self,
-        v: &[V],
-        u: &[[f32; 2]],
-        m: &mut [M],
-    ) -> Result<(), BatchError> {
-        self.lobe.sample_batch(v, u, m)
-    }
-
-    fn g1_batch<V: Copy + Into<[f32; 3]>>(
-        &self,
-        v: &[V],
-        g1: &mut [f32],
-    ) -> Result<(), BatchError> {
-        self.lobe.g1_batch(v, g1)
-    }
-}
-
-lobe_by_reference!(Bounded);
 
 /// Nodes below four coordinates, and the weights of the next nodes.
 #[derive(Clone, Copy)]

@@ -10,10 +10,10 @@ use wide::f32x4;
 
 use super::batch::Batch;
 use super::below_horizon::{ExcessShare, Numbers, SlopeBelowHorizon};
-use super::delegate::lobe_by_reference;
+use super::delegate::{by_ref, forward};
 use super::distribution::{Facet, MicrofacetDistribution, SMOOTH, is_hidden, visible_density};
 use super::horizon::{HORIZON, above_horizon};
-use super::key::LobeKey;
+use super::key::{LobeKey, has_pole};
 use super::lanes::one::draw;
 use super::lanes::views::{View, Views};
 use super::lanes::{first_three, sum};
@@ -338,7 +338,7 @@ impl Tabulated for EllipsoidRef<'_> {
 
     #[inline]
     fn has_pole(&self) -> bool {
-        self.gamma() < 2.0
+        has_pole(self.gamma())
     }
 
     fn bytes(&self) -> usize {
@@ -348,4 +348,4 @@ impl Tabulated for EllipsoidRef<'_> {
 
 impl Batch for EllipsoidRef<'_> {}
 
-lobe_by_reference!(Ellipsoid);
+forward!(#[inline(always)] Ellipsoid, by_ref: MicrofacetDistribution, Reflecting, Tabulated, Batch);

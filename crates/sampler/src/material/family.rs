@@ -15,16 +15,15 @@ use microfacet_tables::Table;
 
 use super::batch::Batch;
 use super::coverage;
-use super::delegate::lobe_of_surface;
+use super::delegate::{forward, surface};
 use super::distribution::{Facet, MicrofacetDistribution};
 use super::family_part::{AtShape, Part};
-use super::key::LobeKey;
+use super::key::{LobeKey, has_pole};
 use super::reflecting::Reflecting;
 use super::roughness::clamped;
 use super::surface::Surface;
 use super::tabulated::Tabulated;
 use crate::error::{BatchError, MaterialError, same_lengths};
-use crate::vector::vec3;
 
 /// Lobes of every σ and γ that a set covers, read from its tables without binding: for materials
 /// whose roughness and tail are textures.
@@ -174,7 +173,7 @@ impl<'a> FamilyLobe<'a> {
     }
 }
 
-lobe_of_surface!(FamilyLobe<'_>);
+forward!(#[inline(always)] FamilyLobe<'_>, surface: MicrofacetDistribution, Reflecting, Batch);
 
 impl Tabulated for FamilyLobe<'_> {
     fn key(&self) -> LobeKey {
@@ -183,7 +182,7 @@ impl Tabulated for FamilyLobe<'_> {
 
     #[inline]
     fn has_pole(&self) -> bool {
-        self.gamma() < 2.0
+        has_pole(self.gamma())
     }
 
     fn bytes(&self) -> usize {

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use microfacet_core::math::sqrt;
+use microfacet_core::math::{sqrt, within};
 use microfacet_core::shape::{S_END, gamma_of_s};
 use microfacet_tables::axis::half_tangent::Lines;
 use microfacet_tables::axis::hermite::{
@@ -146,10 +146,7 @@ impl Part {
     /// γ within the range, NaN at its lower end; finite.
     #[inline(always)]
     pub(super) fn clamped(&self, gamma: f32) -> f32 {
-        let [low, high] = self.range;
-        // Each comparison is one instruction, unlike `max` and `min`, and false for NaN.
-        let gamma = if gamma > low { gamma } else { low };
-        if gamma < high { gamma } else { high }
+        within(gamma, self.range)
     }
 
     /// A clamped γ in double precision, in which an end that was rounded outwards is that end.
@@ -364,12 +361,6 @@ impl<'a> Shape for AtShape<'a> {
     #[inline(always)]
     fn masking_lanes(self, cells: [i32; LANES], w: f32x4) -> f32x4 {
         hermite_lanes(self.part.masking.pairs(self.masking, cells), w)
-    }
-
-    #[inline(always)]
-    fn first_moment(self) -> f32 {
-        let first = self.part.masking.pair(self.masking, 0).map_or(f32::NAN, |x| x.to_array()[0]);
-        self.kappa / (first * self.part.masking_cells)
     }
 
     #[inline(always)]

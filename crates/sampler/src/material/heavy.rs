@@ -161,6 +161,7 @@ pub(crate) fn parts_of_areas(u: f32x4, heavy: f32x4, rest: f32x4) -> [f32x4; 2] 
 mod tests {
     use glam::Vec3;
 
+    use crate::material::surface::Shape as _;
     use crate::{MicrofacetDistribution, Tables};
 
     #[test]

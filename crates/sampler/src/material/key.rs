@@ -9,6 +9,12 @@ use microfacet_tables::LobeSpec;
 
 use super::matrix::Matrix;
 
+/// Whether D of a shape grows without limit towards the horizon.
+#[inline(always)]
+pub(super) fn has_pole(gamma: f64) -> bool {
+    gamma < 2.0
+}
+
 /// The key of a lobe in tables of albedos: its parameters.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -67,7 +73,7 @@ impl LobeKey {
 
     /// Whether D grows without limit towards the horizon, as that of γ < 2 does.
     pub(crate) fn has_pole(&self) -> bool {
-        self.round().is_some_and(|[_, gamma]| gamma < 2.0)
+        self.round().is_some_and(|[_, gamma]| has_pole(gamma))
     }
 
     /// The lines of a recipe's material of this lobe, as far as the key gives them, with a

@@ -1,6 +1,7 @@
 //! The range of roughness that single precision can hold.
 
 use microfacet_core::Roughness;
+use microfacet_core::math::within;
 use microfacet_tables::axis::LogRoughness;
 
 use crate::error::MaterialError;
@@ -20,12 +21,5 @@ pub(crate) fn checked(sigma: Roughness) -> Result<[f32; 2], MaterialError> {
 /// Both σ in [`SIGMAS`], NaN at its lower end.
 #[inline(always)]
 pub(crate) fn clamped(sigma: Roughness) -> [f32; 2] {
-    const LOW: f32 = SIGMAS[0] as f32;
-    const HIGH: f32 = SIGMAS[1] as f32;
-    sigma.0.map(|sigma| {
-        let sigma = sigma as f32;
-        // Each comparison is one instruction, unlike `max` and `min`, and false for NaN.
-        let sigma = if sigma > LOW { sigma } else { LOW };
-        if sigma < HIGH { sigma } else { HIGH }
-    })
+    sigma.0.map(|sigma| within(sigma as f32, SIGMAS.map(|end| end as f32)))
 }

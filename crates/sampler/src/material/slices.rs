@@ -196,11 +196,6 @@ impl Slices {
         [rho, (z + kappa * rho) / (moment * shadowing * f64::from(self.shadowing_cells))]
     }
 
-    /// M₀ = ∫₀^∞ x p(x) dx, the projected area per ρ at grazing: κ over the first value of G1/q.
-    pub(crate) fn first_moment(&self) -> f32 {
-        self.kappa / (self.shadowing[0][0] * self.shadowing_cells)
-    }
-
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(&self.shadowing[..])
             + size_of_val(&self.slope[..])
@@ -328,11 +323,6 @@ impl<'a> Shape for &'a Slices {
     #[inline(always)]
     fn d(self, r2: f32, z2: f32, length2: f32, scale: f32) -> f32 {
         self.normals.d(r2, z2, length2, scale)
-    }
-
-    #[inline(always)]
-    fn first_moment(self) -> f32 {
-        Slices::first_moment(self)
     }
 }
 

@@ -15,8 +15,14 @@ use microfacet_tables::axis::half_tangent::Lines;
 use microfacet_tables::axis::hermite::split;
 use wide::f32x4;
 
-use super::distribution::{Facet, GRAZING, SMOOTH, SMOOTH_MASKED, visible_density};
+use super::batch::Batch;
+use super::distribution::{
+    Facet, GRAZING, MicrofacetDistribution, SMOOTH, SMOOTH_MASKED, visible_density,
+};
 use super::heavy::{Part, Tail, parts};
+use super::reflecting::Reflecting;
+use crate::error::{BatchError, same_lengths};
+use crate::vector::vec3;
 
 /// Directions that lookups take at once.
 pub(crate) const LANES: usize = 4;
@@ -76,7 +82,11 @@ pub(crate) trait Shape: Copy {
     fn masking_of_two(self, cells: [usize; 2], w: f32x4) -> Option<f32x4>;
     fn masking_lanes(self, cells: [i32; LANES], w: f32x4) -> f32x4;
     /// M₀ = ∫₀^∞ x p(x) dx, the projected area per ρ at grazing: κ over the first value of G1/q.
-    fn first_moment(self) -> f32;
+    #[inline(always)]
+    fn first_moment(self) -> f32 {
+        let first = self.masking_cell(0).map_or(f32::NAN, |cell| Self::masking(cell, 0.0));
+        self.kappa() / (first * self.masking_view().1)
+    }
 
     /// D of a normal above the horizon, from the squares of its horizontal component over σ, of its
     /// vertical component and of its length, which need not be 1, and from 1/(πσxσy).
@@ -95,7 +105,7 @@ pub(crate) trait Shape: Copy {
 
     /// The coordinate of one view in rows, equal to the sampler's to rounding.
     #[inline(always)]
-    fn row(self, rho: f32, z: f32) -> f32 {
+    fn row(self, &Stretched { rho, z, .. }: &Stretched) -> f32 {
         let [rho, z, length] = [rho, z, sqrt(rho * rho + z * z)].map(f32x4::splat);
         self.place::<true>(rho, z, length)[0].to_array()[0]
     }
@@ -240,25 +250,52 @@ impl<S: Shape> Surface<S> {
         let (x, y) = (m.x * x, m.y * y);
         self.shape.d(x * x + y * y, m.z * m.z, length2, self.scales.density)
     }
+}
 
+impl<S: Shape> MicrofacetDistribution for Surface<S> {
     #[inline(always)]
-    pub(crate) fn d(self, m: Vec3) -> f32 {
+    fn d(&self, m: impl Into<[f32; 3]>) -> f32 {
+        let m = vec3(m);
         if m.z > 0.0 { self.d_of(m, 1.0) } else { 0.0 }
     }
 
     #[inline(always)]
-    pub(crate) fn visible_normal_pdf(self, v: Vec3, m: Vec3) -> f32 {
+    fn g1(&self, v: impl Into<[f32; 3]>) -> f32 {
+        self.g1_of_one(vec3(v))
+    }
+
+    #[inline(always)]
+    fn sample_visible_normal(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> [f32; 3] {
+        self.sample(vec3(v), u).to_array()
+    }
+
+    #[inline(always)]
+    fn visible_normal_pdf(&self, v: impl Into<[f32; 3]>, m: impl Into<[f32; 3]>) -> f32 {
+        let (v, m) = (vec3(v), vec3(m));
         visible_density(v.dot(m), self.d(m), self.shape.inverse_area(&self.stretch(v)))
     }
 
     #[inline(always)]
-    pub(crate) fn reflection_weight(self, v: Vec3, l: Vec3, masking: Masking) -> f32 {
-        let [g1_v, g1_l] = self.g1_of_both(v, l);
+    fn reflection_weight(
+        &self,
+        v: impl Into<[f32; 3]>,
+        l: impl Into<[f32; 3]>,
+        masking: Masking,
+    ) -> f32 {
+        let v = vec3(v);
+        let [g1_v, g1_l] = self.g1_of_both(v, vec3(l));
         if v.z > 0.0 { masking.g2_over_g1(g1_v, g1_l) } else { 0.0 }
     }
 
     #[inline(always)]
-    pub(crate) fn facet(self, v: Vec3, m: Vec3, l: Vec3, masking: Masking) -> Facet {
+    fn facet(
+        &self,
+        v: impl Into<[f32; 3]>,
+        m: impl Into<[f32; 3]>,
+        l: impl Into<[f32; 3]>,
+        masking: Masking,
+    ) -> Facet {
+        let (v, m, l) = (vec3(v), vec3(m), vec3(l));
         if !(m.z > 0.0) {
             return Facet::default();
         }
@@ -266,8 +303,40 @@ impl<S: Shape> Surface<S> {
     }
 
     #[inline(always)]
-    pub(crate) fn is_smooth(self) -> bool {
+    fn is_effectively_smooth(&self) -> bool {
         let [x, y] = self.scales.sigma;
         self.shape.is_smooth(x.max(y))
+    }
+}
+
+impl<S: Shape> Reflecting for Surface<S> {
+    #[inline(always)]
+    fn sample_reflecting_normal(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> ([f32; 3], f32) {
+        (self.sample_along(vec3(v), u).to_array(), 1.0)
+    }
+}
+
+impl<S: Shape> Batch for Surface<S> {
+    #[inline]
+    fn sample_batch<V: Copy + Into<[f32; 3]>, M: From<[f32; 3]>>(
+        &self,
+        v: &[V],
+        u: &[[f32; 2]],
+        m: &mut [M],
+    ) -> Result<(), BatchError> {
+        same_lengths(&[("v", v.len()), ("u", u.len()), ("m", m.len())])?;
+        self.sample_all(v, u, m);
+        Ok(())
+    }
+
+    #[inline]
+    fn g1_batch<V: Copy + Into<[f32; 3]>>(
+        &self,
+        v: &[V],
+        g1: &mut [f32],
+    ) -> Result<(), BatchError> {
+        same_lengths(&[("v", v.len()), ("g1", g1.len())])?;
+        self.g1_all(v, g1);
+        Ok(())
     }
 }

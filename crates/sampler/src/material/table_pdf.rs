@@ -18,6 +18,7 @@ use microfacet_tables::axis::MirroredRoot;
 use microfacet_tables::axis::half_tangent::{ends, ends_and_rate, slope_at};
 use microfacet_tables::axis::hermite::{Cubic, Node, split};
 
+use super::distribution::MicrofacetDistribution as _;
 use super::slices::Slices;
 use super::student_t::StudentT;
 use super::surface::{Shape, Stretched, Surface};
@@ -129,7 +130,7 @@ impl Slices {
         }
         let [sx, sy] = sigma;
         let view = Stretched::new([sx * v.x, sy * v.y, v.z]);
-        let at = self.coordinate(&view);
+        let at = self.row(&view);
         let Some(rows) = self.rows_at(at) else { return 0.0 };
         let slopes = unit_slopes(&view, sigma, m);
         let UnitSlopes { x, z, y } = slopes;
@@ -184,12 +185,6 @@ impl Slices {
         two_gamma_minus_3 * s * x / base * f64::from(power)
     }
 
-    /// The coordinate of a view in rows, equal to the sampler's to rounding.
-    #[inline(always)]
-    fn coordinate(&self, view: &Stretched) -> f32 {
-        Shape::row(self, view.rho, view.z)
-    }
-
     /// The rows at a view's coordinate, interpolated as the sampler does; `None` where it is NaN.
     #[inline(always)]
     pub(super) fn rows_at(&self, coordinate: f32) -> Option<Rows<'_>> {
@@ -234,7 +229,7 @@ impl Slices {
     }
 
     fn joints(&self, view: &Stretched) -> [Vec<f64>; 2] {
-        let Some(rows) = self.rows_at(self.coordinate(view)) else {
+        let Some(rows) = self.rows_at(self.row(view)) else {
             return Default::default();
         };
         let half = self.half_cells + 1;
@@ -274,6 +269,7 @@ impl StudentT {
 #[cfg(test)]
 mod tests {
     use crate::Tables;
+    use crate::material::surface::Shape as _;
     use glam::Vec3;
 
     #[test]
@@ -284,7 +280,7 @@ mod tests {
             let (surface, slices) = (lobe.surface(), &lobe.slices);
             for z in [0.0, 1e-3, 0.1, 0.4, 0.7, 0.95, 0.9999] {
                 let view = surface.stretch(Vec3::new(libm::sqrtf(1.0 - z * z), 0.0, z));
-                let rows = slices.rows_at(slices.coordinate(&view)).unwrap();
+                let rows = slices.rows_at(slices.row(&view)).unwrap();
                 for i in 1..400 {
                     let u = i as f32 / 400.0;
                     let slope = surface.sample_slope(&view, u);

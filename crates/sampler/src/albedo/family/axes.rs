@@ -6,7 +6,7 @@
 
 use alloc::vec::Vec;
 
-use microfacet_core::math::{sqrt, sqrt64};
+use microfacet_core::math::{sqrt, sqrt64, within};
 use wide::f32x4;
 
 use super::octaves::{inverse, octaves};
@@ -84,8 +84,8 @@ impl Axes {
     #[inline(always)]
     pub(super) fn clamped(&self, sigma: f32, gamma: f32) -> (f32, f32) {
         let is_mirror = self.mirror && sigma <= 0.0;
-        let sigma = if is_mirror { 0.0 } else { clamp(sigma, self.sigmas) };
-        (sigma, 1.0 / clamp(2.0 * gamma - 3.0, self.shapes))
+        let sigma = if is_mirror { 0.0 } else { within(sigma, self.sigmas) };
+        (sigma, 1.0 / within(2.0 * gamma - 3.0, self.shapes))
     }
 
     /// The place of a clamped σ and q.
@@ -112,14 +112,6 @@ impl Axes {
             nodes(AVERAGE, self.sigmas, &of_sigma),
         ]
     }
-}
-
-/// x clamped to a range, and its low end for NaN.
-#[inline(always)]
-fn clamp(x: f32, [low, high]: [f32; 2]) -> f32 {
-    // Each comparison is one instruction, unlike `max` and `min`.
-    let x = if x > low { x } else { low };
-    if x < high { x } else { high }
 }
 
 /// Views: t = share·x^¼ + (1−share)·h^¼ with x = μ/(μ + k sin θ) and h = μ/(1 + sin θ).
