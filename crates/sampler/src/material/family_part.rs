@@ -16,7 +16,7 @@ use super::heavy::{self, Tail, cell_of_share, cells_of_share};
 use super::lanes::sum;
 use super::normals::PowerLaw;
 use super::slices::{Slice, Slices, ascending_across, ascending_rows};
-use super::surface::{LANES, Shape};
+use super::surface::{LANES, Shape, moment_of};
 use super::windows::{Planes, Window, Windows};
 
 /// Stands for γ = ∞: the reciprocal of γ − 1, and its square, are still normal numbers.
@@ -361,6 +361,11 @@ impl<'a> Shape for AtShape<'a> {
     #[inline(always)]
     fn masking_lanes(self, cells: [i32; LANES], w: f32x4) -> f32x4 {
         hermite_lanes(self.part.masking.pairs(self.masking, cells), w)
+    }
+
+    #[inline(always)]
+    fn first_moment(self) -> f32 {
+        moment_of(self)
     }
 
     #[inline(always)]

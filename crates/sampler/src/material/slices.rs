@@ -17,7 +17,7 @@ use super::lanes::four::coefficients;
 use super::lanes::one::pair;
 use super::lanes::swap_halves;
 use super::normals::Normals;
-use super::surface::{LANES, Shape};
+use super::surface::{LANES, Shape, moment_of};
 use crate::error::MaterialError;
 
 /// A (value, slope) table without its γ axis.
@@ -100,6 +100,8 @@ pub(crate) struct Slices {
     /// The view coordinate q of G1, and its κ.
     pub(crate) shadowing_view: Rational,
     pub(crate) kappa: f32,
+    /// M₀, see [`Shape::first_moment`].
+    moment: f32,
     /// In-plane slopes: rows by view, each of `2 (cells + 1)` nodes with the half for u ≤ ½ first;
     /// then a row and a node that are read with weight 0.
     pub(crate) slope: Vec<Node>,
@@ -156,6 +158,7 @@ impl Slices {
             shadowing: cubic_cells(&shadowing.nodes, 1.0 / shadowing_cells as f64),
             shadowing_cells: shadowing_cells as f32,
             kappa: shadowing_view.kappa(s) as f32,
+            moment: f32::NAN,
             shadowing_view,
             slope: slopes,
             rows,
@@ -168,6 +171,7 @@ impl Slices {
             scales: [0.0; 2],
             heavy: Heavy::default(),
         };
+        slices.moment = moment_of(&slices);
         if slices.peeled {
             let moment = f64::from(slices.first_moment());
             let share = |t: f64| slices.share_of_moment(moment, t);
@@ -318,6 +322,11 @@ impl<'a> Shape for &'a Slices {
     #[inline(always)]
     fn masking_lanes(self, cells: [i32; LANES], w: f32x4) -> f32x4 {
         horner_lanes(coefficients(&self.shadowing, cells), w)
+    }
+
+    #[inline(always)]
+    fn first_moment(self) -> f32 {
+        self.moment
     }
 
     #[inline(always)]

@@ -82,11 +82,7 @@ pub(crate) trait Shape: Copy {
     fn masking_of_two(self, cells: [usize; 2], w: f32x4) -> Option<f32x4>;
     fn masking_lanes(self, cells: [i32; LANES], w: f32x4) -> f32x4;
     /// M₀ = ∫₀^∞ x p(x) dx, the projected area per ρ at grazing: κ over the first value of G1/q.
-    #[inline(always)]
-    fn first_moment(self) -> f32 {
-        let first = self.masking_cell(0).map_or(f32::NAN, |cell| Self::masking(cell, 0.0));
-        self.kappa() / (first * self.masking_view().1)
-    }
+    fn first_moment(self) -> f32;
 
     /// D of a normal above the horizon, from the squares of its horizontal component over σ, of its
     /// vertical component and of its length, which need not be 1, and from 1/(πσxσy).
@@ -147,6 +143,13 @@ fn is_almost_smooth<S: Shape>(seed: S::Seed, sigma: f32) -> bool {
     // The mean of |x| over unit slopes x: 1 for GGX, and without limit towards γ = 3/2.
     let mean_slope = 2.0 * shape.first_moment();
     sigma * mean_slope < SMOOTH && masked <= SMOOTH_MASKED
+}
+
+/// [`Shape::first_moment`] from G1.
+#[inline(always)]
+pub(crate) fn moment_of<S: Shape>(shape: S) -> f32 {
+    let first = shape.masking_cell(0).map_or(f32::NAN, |cell| S::masking(cell, 0.0));
+    shape.kappa() / (first * shape.masking_view().1)
 }
 
 /// What a roughness adds to a shape.
