@@ -41,8 +41,8 @@ use crate::vector::vec3;
 /// Normals are drawn by the inverse CDFs of two slopes. Where the whole distribution is tabulated
 /// (γ ≥ 1.8 in the default set), the tilt towards the viewer rises with `u[0]` and the tilt across
 /// with `u[1]`. For smaller γ, `u[0]` first chooses between the tabulated part and the closed-form
-/// heavy part, and the tilt rises within each. Normals from samplers are of unit length to 4 ulp, lie
-/// above the horizon, and face the view to rounding (v·m > −1.2e-7).
+/// heavy part, and the tilt rises within each. Normals from samplers are of unit length to 4 ulp,
+/// lie above the horizon, and face the view to rounding (v·m > −1.2e-7).
 ///
 /// Where a texture gives σ, [`with_roughness`](Self::with_roughness) is the lobe of one hit; where
 /// it gives γ too, see [`Tables::family`](crate::Tables::family).
