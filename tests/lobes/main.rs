@@ -9,6 +9,7 @@ mod bsdf;
 mod classic;
 mod closure;
 mod ellipsoid;
+mod glass;
 mod lobes;
 mod merl;
 mod reference;

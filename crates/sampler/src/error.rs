@@ -37,6 +37,16 @@ pub enum MaterialError {
     /// [`Tables::family_albedo`](crate::Tables::family_albedo) and
     /// [`Tables::shape_albedo`](crate::Tables::shape_albedo) read.
     NoAlbedoRange,
+    /// The set has no albedos of dielectrics of this index over a range of σ, as
+    /// [`Tables::family_dielectric`](crate::Tables::family_dielectric) reads.
+    NoDielectricRange {
+        /// The index of refraction, inside over outside.
+        eta: f64,
+        /// The form of masking asked for.
+        masking: Masking,
+        /// What the nearest table of dielectrics covers, if there is any.
+        nearest: Option<Covered>,
+    },
     /// The set has no albedo tables for this form of masking.
     MaskingNotCovered {
         /// The form asked for.
@@ -174,6 +184,13 @@ impl fmt::Display for MaterialError {
                  read: bake a material whose sigma is a range and that has a fresnel, such as \
                  sigma = { min = 0.05, max = 1 }, fresnel = \"mirror\", or use `albedo` for the \
                  materials that it has",
+            ),
+            Self::NoDielectricRange { eta, masking, nearest } => write!(
+                f,
+                "the set has no albedos of dielectrics of index {eta} over a range of sigma, with {masking} masking{}: bake a \
+                 material whose sigma is a range, such as sigma = {{ min = 0.05, max = 1 }}, \
+                 fresnel = {{ dielectric = {eta} }}, masking = \"{masking}\"",
+                Nearest(nearest)
             ),
             Self::MaskingNotCovered { masking, other: Some(other) } => {
                 write!(f, "this set has no albedo tables for {masking} masking, only for {other}")

@@ -132,8 +132,9 @@ mod vector;
 
 pub use bind_error::BindError;
 pub use bsdf::{
-    AnyBsdf, Bsdf, BsdfSample, BsdfSettings, Compensation, Conductor, ConductorFresnel, Dielectric,
-    Event, Metal, Plastic, StandIn, Transport, UnknownMetal,
+    AnyBsdf, BoundInterface, Bsdf, BsdfSample, BsdfSettings, Compensation, Conductor,
+    ConductorFresnel, Dielectric, DielectricAt, Event, FamilyDielectric, InterfaceAlbedo, Metal,
+    Plastic, StandIn, Transport, UnknownMetal,
 };
 pub use error::MaterialError;
 pub use material::{Ellipsoid, Family, Ggx, Lobe, MicrofacetDistribution, StudentT};

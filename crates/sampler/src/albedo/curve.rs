@@ -70,6 +70,25 @@ impl MaterialWeights {
         }
         Some(collapsed)
     }
+
+    /// At a node of γ and σ, which may be beyond what the table covers, by their indices; `None`
+    /// where the table was not baked for the index of refraction.
+    fn node(table: &Table, [shape, sigma]: [usize; 2], point: &MaterialPoint) -> Option<Self> {
+        let mut weights = Vec::new();
+        for axis in &table.axes {
+            weights.push(match axis.mapping {
+                Mapping::LogShape(_) => alloc::vec![(shape, 1.0)],
+                Mapping::LogRoughness(_) => alloc::vec![(sigma, 1.0)],
+                Mapping::ReflectanceRoot => {
+                    let [first, last] = axis.ends().map(|t| axis.quantity(t));
+                    let eta = end(point.eta, [first?, last?]);
+                    axis.weights(axis.coordinate(eta)?)?
+                }
+                _ => break,
+            });
+        }
+        Some(Self { weights, sigma: point.sigma, is_mirror: false })
+    }
 }
 
 /// `x`, or an end of a range that equals it in single precision, in which lobes take σ.
@@ -110,6 +129,11 @@ impl<const N: usize> ViewCurve<N> {
         Curve::new(table, point).map(Self)
     }
 
+    /// At a node of γ and σ by their indices, which is at `point`.
+    pub(super) fn of_node(table: &Table, node: [usize; 2], point: &MaterialPoint) -> Option<Self> {
+        Some(Self(Curve::collapsed(table, &MaterialWeights::node(table, node, point)?, point)))
+    }
+
     /// The albedos at a view, each in [0, 1].
     ///
     /// `v` is a unit vector in the tangent frame, n = +z. A view at or below the horizon, or NaN,
@@ -119,6 +143,11 @@ impl<const N: usize> ViewCurve<N> {
     #[must_use]
     pub fn eval(&self, v: impl Into<[f32; 3]>) -> [f32; N] {
         self.of_view(vec3(v))
+    }
+
+    /// The albedos at the nodes of the view.
+    pub(super) fn nodes(&self) -> impl Iterator<Item = [f32; N]> {
+        self.0.nodes.iter().map(|node| core::array::from_fn(|i| node[i]))
     }
 
     fn of_view(&self, v: Vec3) -> [f32; N] {
@@ -212,7 +241,10 @@ const ROUND: &Rows = &[(0, 1.0)];
 impl Curve {
     /// `None` where the table does not cover the material.
     pub(super) fn new(table: &Table, point: &MaterialPoint) -> Option<Self> {
-        let at = MaterialWeights::new(table, point)?;
+        Some(Self::collapsed(table, &MaterialWeights::new(table, point)?, point))
+    }
+
+    fn collapsed(table: &Table, at: &MaterialWeights, point: &MaterialPoint) -> Self {
         let moments = table.subject.reflectance == Some(Reflectance::Mirror);
         let channels = table.channels.len();
         let mut nodes: Vec<[f32; CHANNELS]> = Vec::new();
@@ -234,7 +266,7 @@ impl Curve {
             _ => unreachable!("validated on load"),
         };
         let clamp = table.channels.iter().position(|channel| channel == Kind::CLAMP);
-        Some(Self { nodes, views: rest[rest.len() - 1].len(), view, clamp, moments })
+        Self { nodes, views: rest[rest.len() - 1].len(), view, clamp, moments }
     }
 
     /// Calls `then` with the azimuths and the elevation of a view.

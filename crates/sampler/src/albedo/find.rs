@@ -7,6 +7,7 @@ use microfacet_tables::{Kind, LobeForm, Mapping, MaterialEntry, Reflectance, Sid
 use super::curve::{DielectricAlbedo, FresnelAlbedo, MaterialPoint, MaterialWeights, ViewCurve};
 use super::directional::Albedo;
 use super::family::FamilyAlbedo;
+use super::interface::InterfaceAlbedos;
 use super::moments::Moments;
 use super::shape::ShapeAlbedo;
 use crate::bind_error::BindError;
@@ -97,10 +98,6 @@ impl Tables {
     /// [`MaterialError`] if the set has no such table for the form of masking.
     pub fn family_albedo(&self, masking: Masking) -> Result<FamilyAlbedo, MaterialError> {
         let tables = |masking| self.moments(Kind::Albedo, masking);
-        let width = |table: &Table| {
-            let [least, most]: [f64; 2] = table.subject.lobe.gamma.into();
-            s_of_gamma(least) - s_of_gamma(most)
-        };
         let of_roughness = |table: &&Table| smallest_sigma(table).is_some();
         // The first among equals.
         let widest = tables(masking)
@@ -216,6 +213,37 @@ impl Tables {
         })
     }
 
+    /// The albedos of dielectrics of index η ∈ (0, ∞) at every σ and γ. `each` is called with those
+    /// of each node.
+    pub(crate) fn interface_albedos(
+        &self,
+        eta: f64,
+        masking: Masking,
+        mut each: impl FnMut(&DielectricAlbedo),
+    ) -> Result<InterfaceAlbedos, MaterialError> {
+        let dense = eta.max(1.0 / eta);
+        let tables = |side: Side| {
+            self.of_family(Kind::Albedo, masking).filter(move |table| {
+                let reflectance = table.subject.reflectance.as_ref();
+                let here = reflectance.and_then(Reflectance::side) == Some(side);
+                let near = f64::from(f32::EPSILON) * dense;
+                let has = |[low, high]: [f64; 2]| low - near <= dense && dense <= high + near;
+                here && smallest_sigma(table).is_some() && indices(table).is_some_and(has)
+            })
+        };
+        // The first among equals.
+        let thin = tables(Side::Thin).reduce(|a, b| if width(b) > width(a) { b } else { a });
+        let pair = thin.and_then(|thin| {
+            let same = |table: &&Table| table.subject.lobe == thin.subject.lobe;
+            Some([thin, tables(Side::Dense).find(same)?])
+        });
+        pair.and_then(|pair| InterfaceAlbedos::new(pair, eta, &mut each)).ok_or_else(|| {
+            let dielectrics = self.searched().iter().filter(|table| indices(table).is_some());
+            let nearest = nearest(dielectrics, [0.3, 2.0, dense], masking);
+            MaterialError::NoDielectricRange { eta, masking, nearest }
+        })
+    }
+
     fn own<T>(
         &self,
         entry: &MaterialEntry,
@@ -270,6 +298,12 @@ impl Tables {
             .find_map(|table| read(table, &point))
             .ok_or_else(|| not_covered(tables, masking, [sigma, gamma]))
     }
+}
+
+/// How wide a range of shapes a table covers.
+fn width(table: &Table) -> f64 {
+    let [least, most]: [f64; 2] = table.subject.lobe.gamma.into();
+    s_of_gamma(least) - s_of_gamma(most)
 }
 
 /// The error where no table of moments is over roughnesses.

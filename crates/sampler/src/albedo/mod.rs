@@ -4,8 +4,8 @@
 //! Every lobe and reflectance goes the same way: `find` chooses the table by its description,
 //! `curve` collapses the axes of the material, which leaves a curve over the view, and
 //! `directional` makes moments of its channels. `shape` collapses the axis of γ alone, and `family`
-//! none: they are for renderers that take σ, or both, from textures. `common` is what the three
-//! forms have in common.
+//! none: they are for renderers that take σ, or both, from textures, as `interface` is for
+//! dielectrics. `common` is what the three forms of moments have in common.
 //!
 //! The averages of reflectances over the hemisphere are for a compensation of your own.
 
@@ -16,6 +16,7 @@ mod directional;
 mod elevation;
 mod family;
 mod find;
+mod interface;
 mod moments;
 mod reflectance_average;
 mod shape;
@@ -25,6 +26,7 @@ pub use common::DirectionalAlbedo;
 pub use curve::{DielectricAlbedo, FresnelAlbedo, ViewCurve};
 pub use directional::Albedo;
 pub use family::{AlbedoAt, FamilyAlbedo};
+pub(crate) use interface::{InterfaceAlbedos, SideAt};
 pub use moments::Moments;
 pub use reflectance_average::{f82_tint_average, fresnel_average, schlick_average};
 pub use shape::{ShapeAlbedo, ShapeAlbedoAt};

@@ -22,7 +22,7 @@ const PLAIN: f64 = 0.05;
 ///
 /// Drawn by the plain cosine, light of a smooth surface would have weights of the order of 1/σ.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Broad {
+pub struct Broad {
     /// The factors at the ends of the bands.
     factors: [f32; BANDS + 1],
     /// The share of all bands below each end.
@@ -52,7 +52,15 @@ impl Broad {
 
     /// In proportion to a function of direction, averaged over azimuths, times the cosine.
     pub(super) fn new(of: impl Fn(Vec3) -> f32) -> Self {
-        const AZIMUTHS: usize = 8;
+        Self::averaged::<8>(of)
+    }
+
+    /// In proportion to a function of elevation times the cosine.
+    pub(super) fn round(of: impl Fn(Vec3) -> f32) -> Self {
+        Self::averaged::<1>(of)
+    }
+
+    fn averaged<const AZIMUTHS: usize>(of: impl Fn(Vec3) -> f32) -> Self {
         const PLACES: usize = 8;
         let mean = |square: f64| {
             let (cos, r) = (libm::sqrt(square) as f32, libm::sqrt(1.0 - square) as f32);

@@ -1,13 +1,11 @@
 //! A rough dielectric: reflection and refraction.
 
-use alloc::boxed::Box;
-
 use glam::Vec3;
 use microfacet_core::{Masking, saturated};
 
-use super::broad::Broad;
 use super::compensation::Compensation;
-use super::energy::{Energy, Shares, side};
+use super::energy::{BoundInterface, Energy, InterfaceAlbedo, Shares, side};
+use super::family_dielectric::DielectricAt;
 use super::interface::{Interface, Refraction, checked};
 use super::mixture::{Mixture, are_finite, choice, chosen};
 use super::settings::BsdfSettings;
@@ -38,7 +36,7 @@ use crate::vector::vec3;
 /// transmitted at 50° into glass (η = 1.5, σ = 0.3) that is 94 % at γ = 1.501, 12 % at 1.55, 0.65 %
 /// at 1.65 and 0.02 % at 1.8, as the example `steep_facets` prints.
 #[derive(Clone, Debug)]
-pub struct Dielectric<L, const N: usize = 3> {
+pub struct Dielectric<L, const N: usize = 3, A = BoundInterface> {
     lobe: L,
     /// The index as it was given, and in single precision.
     index: f64,
@@ -48,14 +46,7 @@ pub struct Dielectric<L, const N: usize = 3> {
     /// Whether D has a pole at the horizon, and facets next to it are only sampled.
     has_pole: bool,
     /// `None` without compensation.
-    returned: Option<Box<Returned>>,
-}
-
-/// The energy of a compensation, and the densities of its lights on either side.
-#[derive(Clone, Debug)]
-struct Returned {
-    energy: Energy,
-    broad: [Broad; 2],
+    returned: Option<Energy<A>>,
 }
 
 /// The view or its opposite, whichever is above the surface, and the interface as seen from there.
@@ -69,7 +60,7 @@ struct Seen {
 }
 
 /// The compensation and the shares of a view's light; `None` without compensation.
-type Account<'a> = Option<(&'a Returned, Shares)>;
+type Account<'a, A> = Option<(&'a Energy<A>, Shares)>;
 
 /// A facet's normal and, where the facet refracts, the quantities of the density.
 type Sender = (Vec3, Option<Refraction>);
@@ -99,27 +90,62 @@ impl<L: Tabulated> Dielectric<L> {
     }
 }
 
-impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
+impl<L: MicrofacetDistribution, const N: usize, A> Dielectric<L, N, A> {
     /// This dielectric in another number of channels.
     #[must_use]
-    pub fn with_channels<const M: usize>(self) -> Dielectric<L, M> {
+    pub fn with_channels<const M: usize>(self) -> Dielectric<L, M, A> {
         let Self { lobe, index, eta, masking, smooth, has_pole, returned } = self;
         Dielectric { lobe, index, eta, masking, smooth, has_pole, returned }
     }
+}
 
+impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
     /// This dielectric with a compensation by given albedos, which must be of the same lobe and
     /// index; their form of masking becomes that of the dielectric.
     #[must_use]
     pub fn compensated_by(self, albedo: DielectricAlbedo, compensation: Compensation) -> Self {
         let masking = albedo.masking;
         let none = compensation == Compensation::None || self.smooth;
-        let returned = (!none).then(|| {
-            let energy = Energy::rough(albedo, compensation, self.eta);
-            Box::new(Returned { broad: energy.broad(), energy })
-        });
-        Self { masking, returned, ..self }
+        let energy = || Energy::rough(albedo, compensation, self.eta).with_lobes();
+        Self { masking, returned: (!none).then(energy), ..self }
     }
+}
 
+impl<'a, L: Tabulated> Dielectric<L, 3, DielectricAt<'a>> {
+    /// A dielectric made at a hit, for lobes whose σ, or σ and γ, come from textures, in three
+    /// channels, which [`with_channels`](Self::with_channels) changes.
+    ///
+    /// `at` is what [`FamilyDielectric`](crate::FamilyDielectric) has at the σ and γ of the lobe;
+    /// of a lobe that is not round, at √(σx σy), whose albedos stand in with the errors of
+    /// [`StandIn`](crate::StandIn). Index and form of masking are its own. A single bounce needs
+    /// no tables: [`new`](Dielectric::new) makes that of a hit as well.
+    ///
+    /// ```no_run
+    /// use microfacet_sampler::{Bsdf, Compensation, Dielectric, Masking, Tables, Transport};
+    ///
+    /// let tables = Tables::from_bytes(&std::fs::read("glass/tables.safetensors")?)?;
+    /// let (family, glass) =
+    ///     (tables.family()?, tables.family_dielectric(1.5, Masking::HeightCorrelated)?); // once
+    /// let (sigma, gamma, v) = (0.3, 2.5, [0.6, 0.0, 0.8]); // at every hit
+    /// let hit = Dielectric::at_hit(
+    ///     family.at(sigma, gamma),
+    ///     glass.at(sigma, gamma),
+    ///     Compensation::KullaConty,
+    /// );
+    /// let sample = hit.sample(v, 0.3, [0.4, 0.7], Transport::Radiance);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn at_hit(lobe: L, at: DielectricAt<'a>, compensation: Compensation) -> Self {
+        let (index, eta, masking) = (at.eta(), at.index(), at.masking());
+        let (smooth, has_pole) = (lobe.is_effectively_smooth() || eta == 1.0, lobe.has_pole());
+        let none = compensation == Compensation::None || smooth;
+        let returned = (!none).then(|| at.energy(compensation, false));
+        Self { lobe, index, eta, masking, smooth, has_pole, returned }
+    }
+}
+
+impl<L: MicrofacetDistribution, const N: usize, A: InterfaceAlbedo> Dielectric<L, N, A> {
     /// The lobe.
     #[must_use]
     pub fn lobe(&self) -> &L {
@@ -151,9 +177,9 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
     }
 
     #[inline(always)]
-    fn account(&self, seen: &Seen) -> Account<'_> {
-        let returned = self.returned.as_deref()?;
-        Some((returned, returned.energy.shares(seen.side, seen.v)))
+    fn account(&self, seen: &Seen) -> Account<'_, A> {
+        let energy = self.returned.as_ref()?;
+        Some((energy, energy.shares(seen.side, seen.v)))
     }
 
     /// A facet, without its density where that is not needed.
@@ -170,14 +196,14 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
     fn facets(
         &self,
         seen: &Seen,
-        account: Account<'_>,
+        account: Account<'_, A>,
         l: Vec3,
         sender: Sender,
         scale: f32,
         with_pdf: bool,
     ) -> Part<N> {
         let v = seen.v;
-        let factor = account.map_or(1.0, |(returned, shares)| returned.energy.factor(&shares));
+        let factor = account.map_or(1.0, |(energy, shares)| energy.factor(&shares));
         let (m, refraction) = sender;
         match refraction {
             None => {
@@ -199,18 +225,18 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
     fn mixture(
         &self,
         seen: &Seen,
-        account: Account<'_>,
+        account: Account<'_, A>,
         l: Vec3,
         sender: Option<Sender>,
         scale: f32,
         with_pdf: bool,
     ) -> Mixture<N> {
         // The weight of a mixture of two parts takes their densities.
-        let lost = account.map_or(0.0, |(returned, shares)| returned.energy.returned(&shares));
+        let lost = account.map_or(0.0, |(energy, shares)| energy.returned(&shares));
         let with_pdf = with_pdf || lost > 0.0;
         let facets = sender
             .map_or(Part::NONE, |sender| self.facets(seen, account, l, sender, scale, with_pdf));
-        let Some((Returned { energy, broad }, _)) = account.filter(|_| lost > 0.0) else {
+        let Some((energy, _)) = account.filter(|_| lost > 0.0) else {
             return Mixture { p: 1.0, facets, broad: Part::NONE };
         };
         let reflected = energy.reflected(seen.side);
@@ -220,7 +246,7 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
             (1 - seen.side, 1.0 - reflected, scale)
         };
         let lobe = [energy.lobe(lost, side, &energy.shares(side, l)) * scale; N];
-        let broad = Part::broad(l, broad[side].factor(l), share, lobe);
+        let broad = Part::broad(l, energy.broad(side).factor(l), share, lobe);
         Mixture { p: 1.0 - lost, facets, broad }
     }
 
@@ -283,14 +309,14 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
             return Some(sample(l, [weight; N], 0.0, true));
         }
         let account = self.account(&seen);
-        let lost = account.map_or(0.0, |(returned, shares)| returned.energy.returned(&shares));
+        let lost = account.map_or(0.0, |(energy, shares)| energy.returned(&shares));
         let (l, sender) = match (chosen(number, 1.0 - lost), account) {
-            ((false, rest), Some((Returned { energy, broad }, _))) => {
+            ((false, rest), Some((energy, _))) => {
                 let (is_reflected, _) = chosen(rest, energy.reflected(seen.side));
                 let l = if is_reflected {
-                    broad[seen.side].sample(u)
+                    energy.broad(seen.side).sample(u)
                 } else {
-                    -broad[1 - seen.side].sample(u)
+                    -energy.broad(1 - seen.side).sample(u)
                 };
                 if l.z == 0.0 {
                     return None;
@@ -319,7 +345,9 @@ impl<L: MicrofacetDistribution, const N: usize> Dielectric<L, N> {
     }
 }
 
-impl<L: MicrofacetDistribution, const N: usize> Bsdf<N> for Dielectric<L, N> {
+impl<L: MicrofacetDistribution, const N: usize, A: InterfaceAlbedo> Bsdf<N>
+    for Dielectric<L, N, A>
+{
     #[inline]
     fn sample_with_pdf(
         &self,

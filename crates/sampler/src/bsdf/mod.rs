@@ -6,7 +6,8 @@
 //! refraction. `mixture` joins single reflection with `broad`, the density of light of further
 //! bounces, or `grazing`, its closed form. `energy` and `compensation` compute the shares of light
 //! that one bounce returns and loses; `settings` says how BSDFs are made, `bind` finds albedos in
-//! tables, and `coat` computes that of a coat without tables.
+//! tables, and `coat` computes that of a coat without tables. `family_dielectric` has what dielectrics
+//! and plastics need where σ and γ come from textures.
 
 mod any;
 mod bind;
@@ -16,6 +17,7 @@ mod compensation;
 mod conductor;
 mod dielectric;
 mod energy;
+mod family_dielectric;
 mod grazing;
 mod interface;
 mod metal;
@@ -29,6 +31,8 @@ pub use bind::StandIn;
 pub use compensation::Compensation;
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
+pub use energy::{BoundInterface, InterfaceAlbedo};
+pub use family_dielectric::{DielectricAt, FamilyDielectric};
 pub use interface::steep_cosine;
 pub use metal::{Metal, UnknownMetal};
 pub use plastic::Plastic;

@@ -1,14 +1,14 @@
 //! Plastic: a rough dielectric coat over a diffuse base.
 
-use alloc::boxed::Box;
-
 use glam::Vec3;
 use microfacet_core::Masking;
+use microfacet_core::math::unit;
 
 use super::broad::Broad;
 use super::coat::CoatAlbedo;
 use super::compensation::Compensation;
-use super::energy::{Energy, OUTSIDE, Shares};
+use super::energy::{BoundInterface, Energy, InterfaceAlbedo, OUTSIDE, Shares};
+use super::family_dielectric::DielectricAt;
 use super::interface::{Interface, checked};
 use super::mixture::{Mixture, are_finite, choice, chosen};
 use super::reflectance::reflectances;
@@ -58,7 +58,7 @@ use crate::vector::vec3;
 /// [`StandIn::Round`]: crate::StandIn::Round
 /// [`Dielectric`]: crate::Dielectric
 #[derive(Clone, Debug)]
-pub struct Plastic<L, const N: usize = 3> {
+pub struct Plastic<L, const N: usize = 3, A = BoundInterface> {
     lobe: L,
     /// The index as it was given, and in single precision.
     index: f64,
@@ -66,12 +66,13 @@ pub struct Plastic<L, const N: usize = 3> {
     base: [f32; N],
     masking: Masking,
     smooth: bool,
-    energy: Box<Energy>,
+    energy: Energy<A>,
     /// ρ/(η² (1 − ρ R)), and the mean of that times the average of T.
     diffuse: [f32; N],
     mean: f32,
-    /// The density from which light of the base and of the coat's further bounces is drawn.
-    broad: Box<Broad>,
+    /// The share of the plain cosine in the density of light of the base and of the coat's further
+    /// bounces; the rest is the interface's.
+    plain: f32,
 }
 
 impl<L: Reflecting + Tabulated, const N: usize> Plastic<L, N> {
@@ -130,27 +131,81 @@ impl<L: Reflecting, const N: usize> Plastic<L, N> {
 
     fn made(
         lobe: L,
-        [index, eta]: [f64; 2],
+        index: [f64; 2],
         base: [f32; N],
         masking: Masking,
         smooth: bool,
         energy: Energy,
     ) -> Self {
-        let (eta, energy) = (eta as f32, Box::new(energy));
+        let mut plastic = Self::of(lobe, index, base, masking, smooth, energy);
+        // Base and coat in proportion, on average over views.
+        let mean = mean(&plastic.diffuse);
+        plastic.energy = plastic.energy.drawn_by(|energy, l| {
+            let shares = energy.shares(OUTSIDE, l);
+            energy.transmitted(&shares) * mean
+                + energy.reflected(OUTSIDE) * energy.returned(&shares)
+        });
+        Self { plain: 0.0, ..plastic }
+    }
+}
+
+impl<'a, L: Reflecting, const N: usize> Plastic<L, N, DielectricAt<'a>> {
+    /// Plastic made at a hit, for coats whose σ, or σ and γ, and bases whose albedo come from
+    /// textures.
+    ///
+    /// `at` is what [`FamilyDielectric`](crate::FamilyDielectric) has at the σ and γ of the lobe;
+    /// of a lobe that is not round, at √(σx σy), whose albedos stand in with the errors of
+    /// [`StandIn`](crate::StandIn). Index and form of masking are its own. The albedo of the base
+    /// is clamped to [0, 1], NaN to 0.
+    ///
+    /// ```no_run
+    /// use microfacet_sampler::{Bsdf, Compensation, Masking, Plastic, Tables, Transport};
+    ///
+    /// let tables = Tables::from_bytes(&std::fs::read("coat/tables.safetensors")?)?;
+    /// let (family, coat) =
+    ///     (tables.family()?, tables.family_dielectric(1.5, Masking::HeightCorrelated)?); // once
+    /// let (sigma, gamma, base) = (0.3, 2.5, [0.1, 0.4, 0.2]); // at every hit
+    /// let hit = Plastic::at_hit(
+    ///     family.at(sigma, gamma),
+    ///     coat.at(sigma, gamma),
+    ///     base,
+    ///     Compensation::KullaConty,
+    /// );
+    /// let sample = hit.sample([0.6, 0.0, 0.8], 0.3, [0.4, 0.7], Transport::Radiance);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn at_hit(
+        lobe: L,
+        at: DielectricAt<'a>,
+        base: [f32; N],
+        compensation: Compensation,
+    ) -> Self {
+        let (index, eta, masking) = (at.eta(), at.index(), at.masking());
+        let smooth = lobe.is_effectively_smooth() || eta == 1.0;
+        let energy = at.energy(compensation, smooth);
+        Self::of(lobe, [index, eta.into()], base.map(unit), masking, smooth, energy)
+    }
+}
+
+impl<L: Reflecting, const N: usize, A: InterfaceAlbedo> Plastic<L, N, A> {
+    fn of(
+        lobe: L,
+        [index, eta]: [f64; 2],
+        base: [f32; N],
+        masking: Masking,
+        smooth: bool,
+        energy: Energy<A>,
+    ) -> Self {
         let diffuse = base.map(|base| {
             let left = energy.left(base);
             // 1 − ρ R = 0 only where the coat transmits nothing.
             if left > 0.0 { base / left } else { 0.0 }
         });
-        let mean = diffuse.iter().sum::<f32>() / N as f32;
-        // Base and coat in proportion, on average over views.
-        let broad = Box::new(Broad::new(|l| {
-            let shares = energy.shares(OUTSIDE, l);
-            energy.transmitted(&shares) * mean
-                + energy.reflected(OUTSIDE) * energy.returned(&shares)
-        }));
-        let mean = mean * energy.transmitted_average();
-        Self { lobe, index, eta, base, masking, smooth, energy, diffuse, mean, broad }
+        let mean = mean(&diffuse) * energy.transmitted_average();
+        let coat = energy.reflected_average();
+        let plain = if coat > 0.0 { mean / (mean + coat) } else { 1.0 };
+        Self { lobe, index, eta: eta as f32, base, masking, smooth, energy, diffuse, mean, plain }
     }
 
     /// The lobe of the coat.
@@ -205,6 +260,14 @@ impl<L: Reflecting, const N: usize> Plastic<L, N> {
         if self.smooth { Part::NONE } else { self.coat(shares, self.facets().halfway(v, l)) }
     }
 
+    /// A light of the base or of the coat's further bounces; `None` on the horizon.
+    #[inline(always)]
+    fn sample_above(&self, [u, azimuth]: [f32; 2]) -> Option<Vec3> {
+        let (is_plain, u) = chosen(unit(u), self.plain);
+        let broad = if is_plain { &Broad::COSINE } else { self.energy.broad(OUTSIDE) };
+        broad.sample_above([u, azimuth])
+    }
+
     /// The part of the base, with the further bounces that the coat reflects.
     #[inline(always)]
     fn diffuse(&self, shares: &Shares, l: Vec3) -> Part<N> {
@@ -214,11 +277,17 @@ impl<L: Reflecting, const N: usize> Plastic<L, N> {
         let coat =
             energy.reflected(OUTSIDE) * energy.lobe(energy.returned(shares), OUTSIDE, &there);
         let lobe = self.diffuse.map(|diffuse| entering * leaving * diffuse + coat);
-        Part::broad(l, self.broad.factor(l), 1.0, lobe)
+        let factor = self.plain + (1.0 - self.plain) * energy.broad(OUTSIDE).factor(l);
+        Part::broad(l, factor, 1.0, lobe)
     }
 }
 
-impl<L: Reflecting, const N: usize> Bsdf<N> for Plastic<L, N> {
+/// The mean over the channels.
+fn mean<const N: usize>(all: &[f32; N]) -> f32 {
+    all.iter().sum::<f32>() / N as f32
+}
+
+impl<L: Reflecting, const N: usize, A: InterfaceAlbedo> Bsdf<N> for Plastic<L, N, A> {
     #[inline]
     fn sample_with_pdf(
         &self,
@@ -235,7 +304,7 @@ impl<L: Reflecting, const N: usize> Bsdf<N> for Plastic<L, N> {
         let p = self.facets_share(&shares);
         let (is_facet, _) = chosen(choice(number), p);
         let (l, facets) = if !is_facet {
-            let l = self.broad.sample_above(u)?;
+            let l = self.sample_above(u)?;
             (l, self.halfway(&shares, v, l))
         } else if self.smooth {
             return Some((BsdfSample::mirrored(v, [shares.reflection / p; N]), 0.0));
