@@ -123,9 +123,10 @@ fn evaluation_is_that_of_bound_materials() {
                     let check = |got: [f32; 3], want: [f32; 3]| {
                         for (got, want) in got.into_iter().zip(want) {
                             let off = (got - want).abs();
+                            // Averages are interpolated between nodes.
                             assert!(
-                                off < 3e-3 * want + 1e-6,
-                                "{sigma} {gamma} {v} {l}: {got} {want}"
+                                off < 1e-3 * want + 1e-6,
+                                "{compensation:?} {eta} {sigma} {gamma} {v} {l}: {got} {want}"
                             );
                         }
                     };
@@ -168,7 +169,7 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> Mean {
 /// The mean weight of samples; and of lights drawn evenly over the sphere, what f and its density
 /// integrate to.
 fn furnace<B: Bsdf>(v: Vec3, of: impl Fn(f32, f32) -> B) -> [Mean; 3] {
-    const SAMPLES: usize = 200_000;
+    const SAMPLES: usize = 100_000;
     let mut random = StdRng::seed_from_u64(11);
     let all: Vec<[f64; 3]> = (0..SAMPLES)
         .map(|_| {
@@ -201,7 +202,7 @@ fn a_furnace_closes_with_a_surface_for_each_sample() {
         let (mean, error) = (weight.mean, weight.error);
         println!("{what}: {mean:.5} +- {error:.5}, by f {:.4} +- {:.4}", f.mean, f.error);
         assert!(
-            (mean - 1.0).abs() < 3e-3 + 3.0 * error && error < 1.5e-3,
+            (mean - 1.0).abs() < 3e-3 + 3.0 * error && error < 2e-3,
             "{what}: {mean} +- {error}"
         );
         assert!((f.mean - mean).abs() < 4.5 * (f.error + error), "{what}: {} {mean}", f.mean);
@@ -209,21 +210,22 @@ fn a_furnace_closes_with_a_surface_for_each_sample() {
         assert!(pdf.mean < 1.0 + 4.5 * pdf.error && pdf.mean > 0.85, "{what}: {}", pdf.mean);
     };
     for compensation in BOTH {
-        for (eta, albedo) in [(GLASS, glass), (1.0 / GLASS, cavity)] {
-            for cos in [0.04, 0.3, 0.75, 1.0] {
-                for v in [view(cos), -view(cos)] {
-                    let pane = |sigma, gamma| {
-                        let at = albedo.at(sigma, gamma);
-                        Dielectric::at_hit(family.at(sigma, gamma), at, compensation)
-                    };
-                    check(&format!("{compensation:?} pane {eta:.3} {}", v.z), furnace(v, pane));
-                }
-                let coat = |sigma, gamma| {
-                    let at = albedo.at(sigma, gamma);
-                    Plastic::at_hit(family.at(sigma, gamma), at, [1.0; 3], compensation)
+        for cos in [0.04, 0.3, 0.75, 1.0] {
+            for v in [view(cos), -view(cos)] {
+                let pane = |sigma, gamma| {
+                    let at = glass.at(sigma, gamma);
+                    Dielectric::at_hit(family.at(sigma, gamma), at, compensation)
                 };
-                check(&format!("{compensation:?} coat {eta:.3} {cos}"), furnace(view(cos), coat));
+                check(&format!("{compensation:?} pane {}", v.z), furnace(v, pane));
             }
+        }
+        for (albedo, cos) in [(glass, 0.04), (glass, 0.75), (cavity, 0.3)] {
+            let coat = |sigma, gamma| {
+                let at = albedo.at(sigma, gamma);
+                Plastic::at_hit(family.at(sigma, gamma), at, [1.0; 3], compensation)
+            };
+            let what = format!("{compensation:?} coat {:.3} {cos}", albedo.eta());
+            check(&what, furnace(view(cos), coat));
         }
     }
 }

@@ -23,6 +23,8 @@ const LANES: usize = 3;
 #[derive(Clone, Debug)]
 pub(crate) struct InterfaceAlbedos {
     pub(crate) masking: Masking,
+    shapes: Nodes<LogShape>,
+    sigmas: Nodes<LogRoughness>,
     /// Seen from outside, and from inside.
     sides: [Side; 2],
 }
@@ -30,36 +32,28 @@ pub(crate) struct InterfaceAlbedos {
 /// The shares of light reflected and transmitted, seen from one side.
 #[derive(Clone, Debug)]
 struct Side {
-    grid: Grid,
     view: View,
     /// Nodes along the view.
     views: usize,
     /// Both shares at the nodes: by γ, by σ, by view.
-    values: Vec<[f32; 2]>,
-}
-
-/// The nodes of γ and σ.
-#[derive(Clone, Debug)]
-struct Grid {
-    shapes: Nodes<LogShape>,
-    sigmas: Nodes<LogRoughness>,
+    values: Vec<f32>,
 }
 
 /// Nodes along an axis of the material, evenly spaced in its coordinate.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 struct Nodes<M> {
     /// `None` for one node.
     coordinate: Option<M>,
     /// The coordinates of the nodes.
     at: Vec<f64>,
-    /// The smallest and the largest quantity.
+    /// The smallest and the largest quantity that is covered; nodes may lie beyond.
     ends: [f64; 2],
     quantities: Vec<f64>,
 }
 
 /// Six nodes from the first on, and their weights. Where there are fewer nodes, the last weights
 /// are 0.
-pub(crate) type Six = (usize, [f32; SIX]);
+type Six = (usize, [f32; SIX]);
 
 /// A place among the nodes of γ and σ.
 #[derive(Clone, Copy, Debug)]
@@ -79,7 +73,7 @@ enum View {
 
 /// The view's coordinate at one γ and σ.
 #[derive(Clone, Copy, Debug)]
-enum PreparedFor {
+enum Prepared {
     Blend(PreparedView),
     Critical(PreparedCritical),
 }
@@ -91,12 +85,9 @@ impl<M: Copy> Nodes<M> {
             let quantities = alloc::vec![ends[0]];
             return Self { coordinate: None, at: alloc::vec![0.0], ends: [ends[0]; 2], quantities };
         };
-        // A coordinate and its inverse may round to a quantity beyond an end.
-        let within = |&t: &f64| quantity(&mapping, t).max(ends[0]).min(ends[1]);
-        let quantities: Vec<f64> = axis.nodes.iter().map(within).collect();
-        let ends = quantities
-            .iter()
-            .fold([f64::INFINITY, 0.0_f64], |[low, high], &x| [low.min(x), high.max(x)]);
+        let quantities: Vec<f64> = axis.nodes.iter().map(|&t| quantity(&mapping, t)).collect();
+        // Of a mirror, the smallest roughness that is not one.
+        let ends = [ends[0].max(quantities.iter().fold(f64::INFINITY, |a, &b| a.min(b))), ends[1]];
         Self { coordinate: Some(mapping), at: axis.nodes.clone(), ends, quantities }
     }
 
@@ -124,60 +115,51 @@ impl<M: Copy> Nodes<M> {
     }
 }
 
-impl Grid {
-    fn of(table: &Table) -> Self {
-        let lobe = &table.subject.lobe;
-        let of = |which: fn(&Mapping) -> bool| table.axes.iter().find(|axis| which(&axis.mapping));
-        let shape = of(|mapping| matches!(mapping, Mapping::LogShape(_)));
-        let shape = shape.and_then(|axis| match axis.mapping {
+impl Nodes<LogShape> {
+    fn of_shapes(table: &Table) -> Self {
+        let axis = table.axes.iter().find_map(|axis| match axis.mapping {
             Mapping::LogShape(mapping) => Some((axis, mapping)),
             _ => None,
         });
-        let sigma = of(|mapping| matches!(mapping, Mapping::LogRoughness(_)));
-        let sigma = sigma.and_then(|axis| match axis.mapping {
+        Self::new(axis, table.subject.lobe.gamma.into(), LogShape::quantity)
+    }
+}
+
+impl Nodes<LogRoughness> {
+    fn of_roughnesses(table: &Table) -> Self {
+        let axis = table.axes.iter().find_map(|axis| match axis.mapping {
             Mapping::LogRoughness(mapping) => Some((axis, mapping)),
             _ => None,
         });
-        Self {
-            shapes: Nodes::new(shape, lobe.gamma.into(), LogShape::quantity),
-            sigmas: Nodes::new(sigma, lobe.roughness.x().into(), LogRoughness::quantity),
-        }
-    }
-
-    /// All nodes, those of σ fastest: their indices of γ and σ, and their materials.
-    fn nodes(&self, eta: f64) -> impl Iterator<Item = ([usize; 2], MaterialPoint)> {
-        let shapes = self.shapes.quantities.iter().enumerate();
-        shapes.flat_map(move |(i, &gamma)| {
-            let sigmas = self.sigmas.quantities.iter().enumerate();
-            sigmas.map(move |(j, &sigma)| ([i, j], MaterialPoint { sigma, gamma, eta }))
-        })
-    }
-
-    /// σ and γ, clamped to what is covered, and their place.
-    fn place(&self, sigma: f32, gamma: f32) -> ([f64; 2], Place) {
-        let (gamma, shape) = self.shapes.place(gamma.into(), LogShape::coordinate);
-        let (sigma, of_sigma) = self.sigmas.place(sigma.into(), LogRoughness::coordinate);
-        ([sigma, gamma], Place { shape, sigma: of_sigma, width: self.sigmas.len() })
+        Self::new(axis, table.subject.lobe.roughness.x().into(), LogRoughness::quantity)
     }
 }
 
 impl Place {
-    /// The rows of the grid about the place with their weights, from the first.
+    /// The sum over the nodes about the place of what is added for each of them, by its index and
+    /// its weight.
     #[inline(always)]
-    fn rows(&self) -> impl Iterator<Item = (usize, f32)> {
-        let (&(first, weights), &(start, inner)) = (&self.shape, &self.sigma);
-        let width = self.width;
-        // Where there are fewer than six nodes, the last weights are 0.
-        weights.into_iter().enumerate().filter(|(_, a)| *a != 0.0).flat_map(move |(i, a)| {
-            let row = (first + i) * width + start;
-            let inner = inner.into_iter().enumerate().filter(|(_, b)| *b != 0.0);
-            inner.map(move |(j, b)| (row + j, a * b))
-        })
+    fn each(&self, mut add: impl FnMut(usize, f32)) {
+        let ((first, weights), (start, inner)) = (self.shape, self.sigma);
+        for (i, a) in weights.into_iter().enumerate() {
+            // Where there are fewer than six nodes, the last weights are 0.
+            if a == 0.0 {
+                continue;
+            }
+            let row = (first + i) * self.width + start;
+            for (j, b) in inner.into_iter().enumerate() {
+                if b != 0.0 {
+                    add(row + j, a * b);
+                }
+            }
+        }
     }
 
     /// The value at the place of what is tabulated at the nodes.
     pub(crate) fn interpolate(&self, nodes: &[f32x4]) -> f32x4 {
-        self.rows().fold(f32x4::ZERO, |sum, (row, weight)| sum + nodes[row] * weight)
+        let mut sum = f32x4::ZERO;
+        self.each(|node, weight| sum += nodes[node] * weight);
+        sum
     }
 
     /// The node with the largest weight.
@@ -195,60 +177,36 @@ impl Place {
     }
 }
 
-impl Side {
-    /// `None` where the table does not hold the index of the dense side.
-    fn new(table: &Table, dense: f64) -> Option<Self> {
-        let grid = Grid::of(table);
-        let view = match table.axes.last()?.mapping {
-            Mapping::ViewBlend(blend) => View::Blend(blend),
-            Mapping::CriticalBlend(blend) => View::Critical(blend, 1.0 / dense),
-            _ => return None,
-        };
-        let mut values = Vec::new();
-        for (node, point) in grid.nodes(dense) {
-            values.extend(ViewCurve::<2>::of_node(table, node, &point)?.nodes());
-        }
-        Some(Self { grid, view, views: table.axes.last()?.len(), values })
-    }
-
-    fn at(&self, sigma: f32, gamma: f32) -> SideAt<'_> {
-        let ([sigma, gamma], place) = self.grid.place(sigma, gamma);
-        let view = match self.view {
-            View::Blend(blend) => PreparedFor::Blend(blend.prepare(sigma, gamma)),
-            View::Critical(blend, inverse) => {
-                PreparedFor::Critical(blend.prepare(sigma, gamma, inverse))
+impl View {
+    fn prepare(&self, sigma: f64, gamma: f64) -> Prepared {
+        match self {
+            Self::Blend(blend) => Prepared::Blend(blend.prepare(sigma, gamma)),
+            Self::Critical(blend, inverse) => {
+                Prepared::Critical(blend.prepare(sigma, gamma, *inverse))
             }
-        };
-        SideAt { side: self, place, view }
+        }
     }
 }
 
-/// The shares of light seen from one side, at one γ and σ.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct SideAt<'a> {
-    side: &'a Side,
-    pub(crate) place: Place,
-    view: PreparedFor,
-}
-
-impl SideAt<'_> {
+impl Side {
     /// The shares reflected and transmitted of a view at cos θ, each in [0, 1].
-    pub(crate) fn shares(&self, cos: f32) -> [f32; 2] {
-        let Side { views, values, .. } = self.side;
-        let elevation = match &self.view {
-            PreparedFor::Blend(view) => Elevation::Blend(view),
-            PreparedFor::Critical(view) => Elevation::Critical(view),
+    #[inline]
+    fn shares(&self, place: &Place, view: &Prepared, cos: f32) -> [f32; 2] {
+        let Self { views, values, .. } = self;
+        let elevation = match view {
+            Prepared::Blend(view) => Elevation::Blend(view),
+            Prepared::Critical(view) => Elevation::Critical(view),
         };
         let (start, [a, b, c, d, e, f]) = elevation.six(unit(cos), *views);
         let mut sum = [f32x4::ZERO; LANES];
-        for (row, weight) in self.place.rows() {
-            let nodes: &[[f32; 2]; SIX] =
-                values[row * views + start..].first_chunk().expect("six views");
-            for (sum, pair) in sum.iter_mut().zip(nodes.as_chunks::<2>().0) {
-                let [[p, q], [r, s]] = *pair;
-                *sum += f32x4::from([p, q, r, s]) * weight;
+        place.each(|node, weight| {
+            let from = 2 * (node * views + start);
+            let nodes: &[f32; 2 * SIX] = values[from..].first_chunk().expect("six views");
+            let (fours, _) = nodes.as_chunks::<4>();
+            for (sum, four) in sum.iter_mut().zip(fours) {
+                *sum += f32x4::from(*four) * weight;
             }
-        }
+        });
         let weights = [[a, a, b, b], [c, c, d, d], [e, e, f, f]].map(f32x4::from);
         let [p, q, r, s] =
             (sum[0] * weights[0] + sum[1] * weights[1] + sum[2] * weights[2]).to_array();
@@ -257,11 +215,34 @@ impl SideAt<'_> {
     }
 }
 
+/// The shares of light at one γ and σ, from both sides.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct InterfaceAt<'a> {
+    albedos: &'a InterfaceAlbedos,
+    pub(crate) place: Place,
+    sigma: f64,
+    gamma: f64,
+    outside: Prepared,
+}
+
+impl InterfaceAt<'_> {
+    /// The shares reflected and transmitted of a view at cos θ, from outside for side 0.
+    #[inline]
+    pub(crate) fn shares(&self, side: usize, cos: f32) -> [f32; 2] {
+        let of = &self.albedos.sides[side];
+        if side == 0 {
+            return of.shares(&self.place, &self.outside, cos);
+        }
+        // Views from inside are few, and plastics have none.
+        of.shares(&self.place, &of.view.prepare(self.sigma, self.gamma), cos)
+    }
+}
+
 impl InterfaceAlbedos {
     /// From the tables of the thin and of the dense side; η ∈ (0, ∞), inside over outside. `each`
     /// is called for every node of γ and σ, those of σ fastest.
     ///
-    /// `None` where the tables do not hold the index, or have other nodes than each other.
+    /// `None` where the tables do not hold the index, or one has other nodes than the other.
     pub(super) fn new(
         [thin, dense]: [&Table; 2],
         eta: f64,
@@ -270,23 +251,44 @@ impl InterfaceAlbedos {
         let masking = thin.subject.masking?;
         let index = eta.max(1.0 / eta);
         let tables = if eta < 1.0 { [dense, thin] } else { [thin, dense] };
-        let [outside, inside] = tables.map(|table| Side::new(table, index));
-        let all = Self { masking, sides: [outside?, inside?] };
-        let [a, b] =
-            all.sides.each_ref().map(|side| [side.grid.shapes.len(), side.grid.sigmas.len()]);
-        if a != b {
+        let [shapes, other_shapes] = tables.map(Nodes::of_shapes);
+        let [sigmas, other_sigmas] = tables.map(Nodes::of_roughnesses);
+        if shapes != other_shapes || sigmas != other_sigmas {
             return None;
         }
-        for (node, point) in all.sides[0].grid.nodes(index) {
-            let [outside, inside] = tables.map(|table| ViewCurve::of_node(table, node, &point));
-            each(&DielectricAlbedo { masking, outside: outside?, inside: inside? });
+        let mut values = [const { Vec::new() }; 2];
+        for (i, &gamma) in shapes.quantities.iter().enumerate() {
+            for (j, &sigma) in sigmas.quantities.iter().enumerate() {
+                let point = MaterialPoint { sigma, gamma, eta: index };
+                let curves = tables.map(|table| ViewCurve::of_node(table, [i, j], &point));
+                let [outside, inside] = curves;
+                let albedo = DielectricAlbedo { masking, outside: outside?, inside: inside? };
+                values[0].extend(albedo.outside.nodes().flatten());
+                values[1].extend(albedo.inside.nodes().flatten());
+                each(&albedo);
+            }
         }
-        Some(all)
+        let side = |table: &Table, values| {
+            let axis = table.axes.last()?;
+            let view = match axis.mapping {
+                Mapping::ViewBlend(blend) => View::Blend(blend),
+                Mapping::CriticalBlend(blend) => View::Critical(blend, 1.0 / index),
+                _ => return None,
+            };
+            Some(Side { view, views: axis.len(), values })
+        };
+        let [outside, inside] = values;
+        let sides = [side(tables[0], outside)?, side(tables[1], inside)?];
+        Some(Self { masking, shapes, sigmas, sides })
     }
 
-    /// Seen from outside and from inside, at a σ and γ that are clamped to what is covered.
-    pub(crate) fn at(&self, sigma: f32, gamma: f32) -> [SideAt<'_>; 2] {
-        self.sides.each_ref().map(|side| side.at(sigma, gamma))
+    /// At a σ and γ, clamped to what is covered.
+    pub(crate) fn at(&self, sigma: f32, gamma: f32) -> InterfaceAt<'_> {
+        let (gamma, shape) = self.shapes.place(gamma.into(), LogShape::coordinate);
+        let (sigma, of_sigma) = self.sigmas.place(sigma.into(), LogRoughness::coordinate);
+        let place = Place { shape, sigma: of_sigma, width: self.sigmas.len() };
+        let outside = self.sides[0].view.prepare(sigma, gamma);
+        InterfaceAt { albedos: self, place, sigma, gamma, outside }
     }
 
     /// The memory that it takes, in bytes.

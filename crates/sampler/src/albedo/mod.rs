@@ -26,7 +26,7 @@ pub use common::DirectionalAlbedo;
 pub use curve::{DielectricAlbedo, FresnelAlbedo, ViewCurve};
 pub use directional::Albedo;
 pub use family::{AlbedoAt, FamilyAlbedo};
-pub(crate) use interface::{InterfaceAlbedos, SideAt};
+pub(crate) use interface::{InterfaceAlbedos, InterfaceAt};
 pub use moments::Moments;
 pub use reflectance_average::{f82_tint_average, fresnel_average, schlick_average};
 pub use shape::{ShapeAlbedo, ShapeAlbedoAt};

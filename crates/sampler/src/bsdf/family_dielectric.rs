@@ -9,9 +9,9 @@ use wide::f32x4;
 
 use super::broad::Broad;
 use super::compensation::Compensation;
-use super::energy::{Averages, Energy, InterfaceAlbedo, OUTSIDE, Totals, averages, smooth_shares};
+use super::energy::{Averages, Energy, InterfaceAlbedo, Totals, averages, smooth_shares};
 use super::interface::checked;
-use crate::albedo::{InterfaceAlbedos, SideAt};
+use crate::albedo::{InterfaceAlbedos, InterfaceAt};
 use crate::bind_error::BindError;
 use crate::elementary::exp2;
 use crate::tables::Tables;
@@ -107,7 +107,7 @@ impl FamilyDielectric {
     /// Both are clamped to the ranges that the set's tables cover; NaN counts as the smallest.
     #[must_use]
     pub fn at(&self, sigma: f32, gamma: f32) -> DielectricAt<'_> {
-        DielectricAt { family: self, sides: self.albedos.at(sigma, gamma), smooth: false }
+        DielectricAt { family: self, at: self.albedos.at(sigma, gamma), smooth: false }
     }
 
     /// The index of refraction, inside over outside.
@@ -135,8 +135,7 @@ impl FamilyDielectric {
 #[derive(Clone, Copy, Debug)]
 pub struct DielectricAt<'a> {
     family: &'a FamilyDielectric,
-    /// Seen from outside, and from inside.
-    sides: [SideAt<'a>; 2],
+    at: InterfaceAt<'a>,
     /// Whether the lobe is a mirror, whatever the tables hold.
     smooth: bool,
 }
@@ -160,14 +159,14 @@ impl<'a> DielectricAt<'a> {
     /// is the grazing view.
     #[must_use]
     pub fn outside(&self, v: impl Into<[f32; 3]>) -> [f32; 2] {
-        self.sides[0].shares(vec3(v).z)
+        self.at.shares(0, vec3(v).z)
     }
 
     /// The shares of light that one bounce reflects and transmits, seen from inside; z points to
     /// the side of the view.
     #[must_use]
     pub fn inside(&self, v: impl Into<[f32; 3]>) -> [f32; 2] {
-        self.sides[1].shares(vec3(v).z)
+        self.at.shares(1, vec3(v).z)
     }
 
     /// In single precision, 1 if next to 1.
@@ -181,7 +180,7 @@ impl<'a> DielectricAt<'a> {
         let (totals, compensation) = if smooth {
             (self.family.smooth, Compensation::None)
         } else {
-            let place = &self.sides[OUTSIDE].place;
+            let place = &self.at.place;
             let averages = averages.each_ref().map(|nodes| -> Averages {
                 let all = place.interpolate(nodes);
                 let lost = exp2(f32x4::splat(all.to_array()[2])).to_array()[0];
@@ -201,11 +200,11 @@ impl InterfaceAlbedo for DielectricAt<'_> {
         if self.smooth {
             return smooth_shares(self.family.eta, side, v);
         }
-        self.sides[side].shares(v.z.abs())
+        self.at.shares(side, v.z.abs())
     }
 
     #[inline]
     fn broad(&self, side: usize) -> &Broad {
-        &self.family.broad[self.sides[OUTSIDE].place.nearest()][side]
+        &self.family.broad[self.at.place.nearest()][side]
     }
 }
