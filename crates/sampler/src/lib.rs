@@ -95,7 +95,7 @@
 //! | lose fewer samples below the horizon | [`StudentT::bounded`] |
 //! | compensate multiple scattering yourself | [`Tables::albedo`], [`albedo::Albedo`] |
 //! | take σ from a texture | [`StudentT::with_roughness`], also of a bounded lobe; [`Ellipsoid::with_skew`] |
-//! | take σ and γ from textures | [`Tables::family`], [`Tables::family_albedo`]; [`Conductor::at_hit`] |
+//! | take σ and γ from textures | [`Tables::family`], [`Tables::family_albedo`], [`Tables::family_dielectric`]; `at_hit` of [`Conductor`], [`Dielectric`] and [`Plastic`] |
 //! | write a set, or read one table | the crate [`microfacet_tables`] |
 //! | write the lookups in another language | [`port`] |
 //!

@@ -10,7 +10,7 @@ use microfacet_tables::axis::lagrange::{SIX, six, weights};
 use microfacet_tables::axis::{
     CriticalBlend, LogRoughness, LogShape, PreparedCritical, PreparedView, ViewBlend,
 };
-use microfacet_tables::{Axis, Mapping, Table};
+use microfacet_tables::{Axis, Interpolation, Mapping, Table};
 use wide::f32x4;
 
 use super::curve::{DielectricAlbedo, MaterialPoint, ViewCurve};
@@ -79,16 +79,25 @@ enum Prepared {
 }
 
 impl<M: Copy> Nodes<M> {
-    /// Of an axis between two quantities; of no axis, one node.
-    fn new(axis: Option<(&Axis, M)>, ends: [f64; 2], quantity: impl Fn(&M, f64) -> f64) -> Self {
+    /// Of an axis between two quantities; of no axis, one node. `None` where nothing is to be read
+    /// between nodes.
+    fn new(
+        axis: Option<(&Axis, M)>,
+        ends: [f64; 2],
+        quantity: impl Fn(&M, f64) -> f64,
+    ) -> Option<Self> {
         let Some((axis, mapping)) = axis else {
-            let quantities = alloc::vec![ends[0]];
-            return Self { coordinate: None, at: alloc::vec![0.0], ends: [ends[0]; 2], quantities };
+            let (at, quantities) = (alloc::vec![0.0], alloc::vec![ends[0]]);
+            return Some(Self { coordinate: None, at, ends: [ends[0]; 2], quantities });
         };
+        // Nodes of `Lagrange6` are even, which is checked when a table is loaded.
+        if axis.len() > 1 && axis.interpolation != Interpolation::Lagrange6 {
+            return None;
+        }
         let quantities: Vec<f64> = axis.nodes.iter().map(|&t| quantity(&mapping, t)).collect();
         // Of a mirror, the smallest roughness that is not one.
         let ends = [ends[0].max(quantities.iter().fold(f64::INFINITY, |a, &b| a.min(b))), ends[1]];
-        Self { coordinate: Some(mapping), at: axis.nodes.clone(), ends, quantities }
+        Some(Self { coordinate: Some(mapping), at: axis.nodes.clone(), ends, quantities })
     }
 
     fn len(&self) -> usize {
@@ -116,7 +125,7 @@ impl<M: Copy> Nodes<M> {
 }
 
 impl Nodes<LogShape> {
-    fn of_shapes(table: &Table) -> Self {
+    fn of_shapes(table: &Table) -> Option<Self> {
         let axis = table.axes.iter().find_map(|axis| match axis.mapping {
             Mapping::LogShape(mapping) => Some((axis, mapping)),
             _ => None,
@@ -126,7 +135,7 @@ impl Nodes<LogShape> {
 }
 
 impl Nodes<LogRoughness> {
-    fn of_roughnesses(table: &Table) -> Self {
+    fn of_roughnesses(table: &Table) -> Option<Self> {
         let axis = table.axes.iter().find_map(|axis| match axis.mapping {
             Mapping::LogRoughness(mapping) => Some((axis, mapping)),
             _ => None,
@@ -256,6 +265,7 @@ impl InterfaceAlbedos {
         if shapes != other_shapes || sigmas != other_sigmas {
             return None;
         }
+        let (shapes, sigmas) = (shapes?, sigmas?);
         let mut values = [const { Vec::new() }; 2];
         for (i, &gamma) in shapes.quantities.iter().enumerate() {
             for (j, &sigma) in sigmas.quantities.iter().enumerate() {

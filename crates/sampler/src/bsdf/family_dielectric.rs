@@ -60,7 +60,7 @@ impl Tables {
     /// masking = "height-correlated"
     /// ```
     ///
-    /// The call takes a tenth of a second for such a set; keep the result.
+    /// The call takes some tens of milliseconds for such a set; keep the result.
     ///
     /// # Errors
     /// [`BindError::Index`] unless η lies in [1e-3, 1e3];

@@ -6,8 +6,8 @@
 //! refraction. `mixture` joins single reflection with `broad`, the density of light of further
 //! bounces, or `grazing`, its closed form. `energy` and `compensation` compute the shares of light
 //! that one bounce returns and loses; `settings` says how BSDFs are made, `bind` finds albedos in
-//! tables, and `coat` computes that of a coat without tables. `family_dielectric` has what dielectrics
-//! and plastics need where σ and γ come from textures.
+//! tables, and `coat` computes that of a coat without tables. `family_dielectric` has what
+//! dielectrics and plastics need where σ and γ come from textures.
 
 mod any;
 mod bind;
