@@ -41,8 +41,9 @@ pub struct FamilyDielectric {
     smooth: Totals,
 }
 
-/// The logarithm of an average loss that counts as none.
-const LEAST: f64 = -120.0;
+/// The logarithm of an average loss that is rounding alone. Less counts as this, so that
+/// polynomials do not overshoot between nodes with and without a loss.
+const LEAST: f64 = -24.0;
 
 impl Tables {
     /// Rough dielectrics of an index of refraction η, inside over outside, at every σ and γ that
@@ -185,7 +186,7 @@ impl<'a> DielectricAt<'a> {
                 let all = place.interpolate(nodes);
                 let lost = exp2(f32x4::splat(all.to_array()[2])).to_array()[0];
                 let [reflected, transmitted, log, whole] = all.to_array().map(f64::from);
-                let lost = if log > LEAST + 1.0 { lost.into() } else { 0.0 };
+                let lost = if log > LEAST + 1.0 { f64::from(lost).min(1.0) } else { 0.0 };
                 [reflected, transmitted, lost, whole]
             });
             (Totals::rough(averages, compensation, *eta), compensation)
