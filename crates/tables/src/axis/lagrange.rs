@@ -12,6 +12,7 @@ pub const SIX: usize = 6;
 /// The first of the `window` of `n` nodes that a polynomial goes through. The cell that ends at
 /// node `above` is in their middle, or as near to it as the ends allow: windows at the ends are
 /// shifted, not shortened.
+#[inline]
 fn first_node(above: usize, n: usize, window: usize) -> usize {
     above.saturating_sub(window / 2).min(n - window)
 }
@@ -52,10 +53,11 @@ pub(super) fn is_even(nodes: &[f64]) -> bool {
 /// node, and the weights. A t outside [0, 1] is taken at the nearer end, NaN at 0.
 #[inline]
 pub fn six(t: f32, n: usize) -> (usize, [f32; SIX]) {
-    // `max` takes NaN to 0, which `clamp` would keep.
-    let x = (t * (n - 1) as f32).max(0.0).min((n - 1) as f32);
-    let start = first_node(x as usize + 1, n, SIX);
-    (start, six_weights(x - start as f32))
+    // Of 32 bits a conversion is one instruction.
+    let last = (n - 1) as i32 as f32;
+    let x = within(t * last, [0.0, last]);
+    let start = first_node(x as i32 as usize + 1, n, SIX);
+    (start, six_weights(x - start as i32 as f32))
 }
 
 /// Weights of the polynomial through the nodes 0 … 5 at x.

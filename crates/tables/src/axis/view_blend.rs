@@ -110,12 +110,14 @@ pub(super) fn harmonic(a: f64, b: f64) -> f64 {
 }
 
 /// sin θ, x and h of a view; `knee` is κσ.
+#[inline]
 pub(super) fn terms(cos: f64, knee: f64) -> (f64, f64, f64) {
     let sin = sqrt64((1.0 - cos) * (1.0 + cos));
     (sin, cos / (cos + knee * sin), cos / (1.0 + sin))
 }
 
 /// share·x^¼ + (1−share)·h^¼.
+#[inline]
 pub(super) fn fourth_roots(share: f64, x: f64, h: f64) -> f64 {
     let root = |x: f64| sqrt64(sqrt64(x));
     share * root(x) + (1.0 - share) * root(h)
@@ -140,6 +142,7 @@ impl PreparedView {
         self.floor
     }
 
+    #[inline]
     fn y(&self, cos: f64) -> f64 {
         let ViewBlend { weight, normal, share, .. } = self.blend;
         let (sin, x, h) = terms(cos, self.knee);
@@ -149,11 +152,13 @@ impl PreparedView {
     }
 
     /// t of cos θ ∈ [μ₀, 1].
+    #[inline]
     pub fn coordinate(&self, cos: f64) -> f64 {
         (self.y(cos) - self.start) / (1.0 - self.start)
     }
 
     /// t of any cos θ ∈ [0, 1]; a view with cos θ < μ₀ is taken at the first node.
+    #[inline]
     pub fn clamped(&self, cos: f32) -> f32 {
         if cos > self.floor as f32 { self.coordinate(f64::from(cos)) as f32 } else { 0.0 }
     }
@@ -195,14 +200,13 @@ impl FastBlend {
             constants: f32x4::from([0.0, 1.0, turn, 1.0]),
             sines: f32x4::from([knee, 1.0, 1.0, 0.0]),
             floor: most * (slope / (most + slope + f32::MIN_POSITIVE)),
+            scale: 0.0,
+            shift: 0.0,
             last: self.last,
         };
-        // By the same operations as t, which is 0 at the first node.
-        let start = view.position(view.floor);
-        let scale = self.cells / (1.0 - start);
-        let shift = f32x4::from([0.0, 0.0, 0.0, start * scale + MIDDLE]);
-        view.quotients = self.quotients * scale - shift;
-        view.roots = self.roots * scale;
+        let start = view.y(view.floor);
+        view.scale = self.cells / (1.0 - start);
+        view.shift = -start * view.scale - MIDDLE;
         view
     }
 }
@@ -212,13 +216,17 @@ impl FastBlend {
 /// t errs by less than 1e-7 + 2e-7 t: most next to the normal, where albedos are level.
 #[derive(Clone, Copy, Debug)]
 pub struct FastView {
-    /// Factors of the lanes, of which the last is a sum, and of their fourth roots.
+    /// Shares of the lanes, and of their fourth roots.
     quotients: f32x4,
     roots: f32x4,
     /// What the denominators hold beside cos θ: constants, and factors of sin θ.
     constants: f32x4,
     sines: f32x4,
     floor: f32,
+    /// From y to the place among the nodes. Were the shares multiplied, a lookup would wait for all
+    /// that prepares it.
+    scale: f32,
+    shift: f32,
     /// The first node of the last six.
     last: f32,
 }
@@ -238,17 +246,22 @@ impl FastView {
         six_lanes(self.position(cos), self.last)
     }
 
-    /// The place among the nodes, less [`MIDDLE`]. While `prepare` is at work, y(cos θ).
+    /// The place among the nodes, less [`MIDDLE`].
     #[inline(always)]
     fn position(&self, cos: f32) -> f32 {
+        self.y(cos) * self.scale + self.shift
+    }
+
+    #[inline(always)]
+    fn y(&self, cos: f32) -> f32 {
         let sin = sqrt((1.0 - cos) * (1.0 + cos));
         let [x, both, others] =
             [[1.0, 0.0, 0.0, 0.0], [1.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 1.0]].map(f32x4::from);
         let over = both * cos + others * self.constants;
         let lanes = over / ((x * cos + self.constants) + self.sines * sin);
         let sum = lanes * self.quotients + lanes.sqrt().sqrt() * self.roots;
-        let [x, h, normal, one] = sum.to_array();
-        (x + h) + (normal + one)
+        let [x, h, normal, _] = sum.to_array();
+        (x + h) + normal
     }
 }
 
