@@ -199,6 +199,10 @@ fn values<'a>(slices: &'a Slices, on: &'a Surfaces<'a>) -> Vec<Rival<PerHit<'a>>
     let d_at_hit = What::D(each(whole, |hit| family.at(hit.sigma, hit.gamma).d(hit.m)));
     let d_of_ggx = What::D(each(ggx, |hit| of_ggx(hit).d(hit.m)));
     let volume = slices.albedo();
+    let of_shape = set.shape_albedo(GAMMA, Masking::HeightCorrelated).expect("it has every shape");
+    // Of E alone.
+    let touched = size_of_val(&of_shape.channels[0][..]);
+    let e_of_sigma = What::Albedo(each(of_sigma, move |hit| of_shape.at(hit.sigma).albedo(hit.v)));
     let e_at_hit = What::Albedo(each(whole, |hit| volume.at(hit.sigma, hit.gamma).albedo(hit.v)));
     let e_of_ggx = What::Albedo(each(ggx, move |hit| lookup.at(hit.sigma, hit.v.z)));
     vec![
@@ -210,6 +214,7 @@ fn values<'a>(slices: &'a Slices, on: &'a Surfaces<'a>) -> Vec<Rival<PerHit<'a>>
         // No table of its shape.
         form("D, sigma and gamma random", VARIES, whole, d_at_hit),
         form("D of GGX, sigma per hit", 2.0, ggx, d_of_ggx),
+        Rival { bytes: touched, ..form("E, sigma random, one shape", GAMMA, of_sigma, e_of_sigma) },
         Rival { bytes: volume.bytes(), ..form(ALBEDO, VARIES, whole, e_at_hit) },
         Rival { bytes, stored: bytes, ..form(LOOKUP, 2.0, ggx, e_of_ggx) },
     ]

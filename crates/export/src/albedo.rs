@@ -53,6 +53,8 @@ impl AlbedoTable {
             return None;
         }
         let sigma = ends.map(|t| found.axis.quantity(t));
+        let [e, bias, f82] = &found.channels;
+        let values = e.iter().zip(bias).zip(f82).map(|((&e, &bias), &f82)| [e, bias, f82]);
         let mut table = Self {
             masking,
             roughness: found.roughness,
@@ -61,7 +63,7 @@ impl AlbedoTable {
             sigmas,
             view: found.view,
             views: found.views,
-            values: found.values,
+            values: values.collect(),
             averages: Vec::new(),
             average_error: f64::INFINITY,
             errors: [

@@ -293,6 +293,12 @@ fn the_albedo_of_a_shape_is_that_of_a_bound_material() {
                     assert!(off.iter().all(|x| x.abs() < most), "{name}");
                     assert!((bound.lost(view(cos)) - at.lost(view(cos))).abs() < most, "{name}");
                 }
+                for i in 0..=400 {
+                    // From the normal to grazing.
+                    let cos = 1.0 - (i as f32 / 401.0).powi(2);
+                    let off = (bound.lost(view(cos)) - at.lost(view(cos))).abs();
+                    assert!(off < 1e-6, "{masking:?} {gamma} {sigma} {cos}: {off}");
+                }
                 let (a, b) = (bound.lost_average(), at.lost_average());
                 assert!((a - b).abs() < 1e-6 + 1e-3 * a, "{gamma} {sigma}: {a} {b}");
             }

@@ -1,16 +1,19 @@
 //! The albedos of one shape for all roughnesses.
 
 use alloc::vec::Vec;
+use core::f64::consts::LN_2;
 
 use microfacet_core::Masking;
-use microfacet_core::math::unit;
-use microfacet_tables::axis::lagrange::{SIX, six, weights};
-use microfacet_tables::axis::{LogRoughness, PreparedView, ViewBlend};
+use microfacet_core::math::{unit, within};
+use microfacet_tables::axis::lagrange::{MIDDLE, SIX, SixLanes, six_lanes, weights};
+use microfacet_tables::axis::{FastBlend, FastView, LogRoughness, ViewBlend};
 use microfacet_tables::{Axis, Interpolation, Kind, Mapping, Table};
+use wide::f32x4;
 
 use super::average::over_views;
 use super::elevation::Elevation;
 use super::moments::{Moments, averaged, down_to_grazing, less_mirror};
+use crate::elementary::log2;
 use crate::tables::Tables;
 use crate::vector::vec3;
 
@@ -20,7 +23,8 @@ use crate::vector::vec3;
 /// Made by [`Tables::shape_albedo`]. [`at`](Self::at) gives the values of
 /// [`Tables::albedo`](crate::Tables::albedo) to rounding, without its call for each σ;
 /// [`FamilyAlbedo`](crate::albedo::FamilyAlbedo) takes γ at every hit as well, in less time and
-/// with an error of its own.
+/// with an error of its own. `at` and E at a view take some 30 ns each;
+/// `cargo run --profile dist -p microfacet-bench` measures both together.
 #[derive(Clone, Debug)]
 pub struct ShapeAlbedo<'a> {
     /// The table.
@@ -33,11 +37,50 @@ pub struct ShapeAlbedo<'a> {
     pub view: ViewBlend,
     /// Nodes along the view.
     pub views: usize,
-    /// E − 1, and the excess of bias and F82 over E times those of a mirror: by σ, by view.
-    pub values: Vec<[f32; 3]>,
+    /// E − 1, and the excess of bias and F82 over E times those of a mirror: each by σ, by view.
+    /// Where there are fewer than six roughnesses, rows of zeros stand for the others.
+    pub channels: [Vec<f32>; 3],
+    fast: FastBlend,
+    /// How far one roughness is from the next among the values.
+    stride: u32,
     masking: Masking,
     /// The σ of the first node and of the last.
-    ends: [f64; 2],
+    ends: [f32; 2],
+    /// Whether the table has a mirror, σ = 0.
+    mirror: bool,
+    /// Of six nodes and more.
+    place: Option<Place>,
+}
+
+/// The coordinate of roughnesses among evenly spaced nodes, as [`LogRoughness`] states it, in
+/// single precision.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    offset: f32,
+    /// Factors of log₂(offset + σ), of log₂ σ and of σ, and what is added.
+    factors: [f32; 4],
+    /// The first of the last six nodes.
+    last: f32,
+}
+
+impl Place {
+    fn new(roughness: LogRoughness, axis: &Axis) -> Self {
+        let LogRoughness { offset, first, slow, linear } = roughness;
+        let (n, [low, high]) = (axis.len(), axis.ends());
+        let density = (n - 1) as f64 / (high - low);
+        let start = libm::log(offset) + slow * libm::log(first) + low;
+        let added = -start * density - f64::from(MIDDLE);
+        let factors = [LN_2 * density, LN_2 * slow * density, linear * density, added];
+        Self { offset: offset as f32, factors: factors.map(|x| x as f32), last: (n - SIX) as f32 }
+    }
+
+    /// The first of the six nodes about a roughness between the ends, and their weights.
+    #[inline(always)]
+    fn six(&self, sigma: f32) -> (usize, SixLanes) {
+        let [a, b, c, added] = self.factors;
+        let [near, far, ..] = log2(f32x4::from([self.offset + sigma, sigma, 1.0, 1.0])).to_array();
+        six_lanes((a * near + b * far) + (c * sigma + added), self.last)
+    }
 }
 
 impl<'a> ShapeAlbedo<'a> {
@@ -67,17 +110,26 @@ impl<'a> ShapeAlbedo<'a> {
         let weights = shape.weights(shape.coordinate(gamma)?)?;
         let values = table.collapsed::<f64>(&[weights]);
         let (nodes, rest) = values.as_chunks::<3>();
-        let [first, last] = sigma.ends().map(|t| roughness.quantity(t));
+        let channel = |i: usize| {
+            let mut channel: Vec<f32> = nodes.iter().map(|node| node[i] as f32).collect();
+            channel.resize(sigma.len().max(SIX) * view.len(), 0.0);
+            channel
+        };
         let masking = table.subject.masking?;
+        let blend = blend.of_shape(gamma);
         rest.is_empty().then(|| Self {
             table,
             roughness,
             axis: sigma,
-            view: blend.of_shape(gamma),
+            view: blend,
             views: view.len(),
-            values: nodes.iter().map(|node| node.map(|x| x as f32)).collect(),
+            channels: core::array::from_fn(channel),
+            fast: blend.fast(view.len()),
+            stride: view.len() as u32,
             masking,
-            ends: [first, last],
+            ends: sigma.ends().map(|t| roughness.quantity(t) as f32),
+            mirror: table.subject.lobe.roughness.x().min <= 0.0,
+            place: (sigma.len() >= SIX).then(|| Place::new(roughness, sigma)),
         })
     }
 
@@ -87,28 +139,35 @@ impl<'a> ShapeAlbedo<'a> {
         self.masking
     }
 
-    /// The albedo at a roughness, in some tens of nanoseconds.
+    /// The albedo at a roughness.
     ///
     /// σ is clamped to the table's, [1e-8, 3] in the default set, and NaN counts as the smallest;
     /// σ ≤ 0 is a mirror, with E = 1, where the table has one.
+    #[inline]
     #[must_use]
     pub fn at(&self, sigma: f32) -> ShapeAlbedoAt<'_> {
-        let [first, last] = self.ends;
-        let mirror = sigma <= 0.0 && self.table.subject.lobe.roughness.x().min <= 0.0;
-        let sigma = f64::from(sigma).max(first).min(last);
-        let (n, [low, high]) = (self.axis.len(), self.axis.ends());
-        let t = self.roughness.coordinate(sigma);
-        let (start, weights) = if n >= SIX {
-            six(((t - low) / (high - low)) as f32, n)
-        } else {
-            let mut all = [0.0; SIX];
-            for (i, weight) in weights(&self.axis.nodes, t, SIX) {
-                all[i] = weight as f32;
-            }
-            (0, all)
+        let is_mirror = self.mirror && sigma <= 0.0;
+        let sigma = within(sigma, self.ends);
+        let (start, [low, high]) = match &self.place {
+            Some(place) => place.six(sigma),
+            None => self.few(sigma),
         };
-        let weights = if mirror { [0.0; SIX] } else { weights };
-        ShapeAlbedoAt { shape: self, start, weights, view: self.view.prepare_shaped(sigma) }
+        let scale = if is_mirror { 0.0 } else { 1.0 };
+        let ([a, b, c, d], [.., e, f]) = ((low * scale).to_array(), (high * scale).to_array());
+        let weights = [[a, b], [c, d], [e, f]].map(|pair| pair.map(f32x4::splat));
+        let (start, view) = (start as u32 * self.stride, self.fast.prepare(sigma));
+        ShapeAlbedoAt { shape: self, start, weights, sigma, view }
+    }
+
+    /// The weights of fewer than six roughnesses.
+    #[cold]
+    fn few(&self, sigma: f32) -> (usize, SixLanes) {
+        let mut all = [0.0; SIX];
+        for (i, weight) in weights(&self.axis.nodes, self.roughness.coordinate(sigma.into()), SIX) {
+            all[i] = weight as f32;
+        }
+        let [a, b, c, d, e, f] = all;
+        (0, [[a, b, c, d], [0.0, 0.0, e, f]].map(f32x4::from))
     }
 }
 
@@ -118,10 +177,12 @@ impl<'a> ShapeAlbedo<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct ShapeAlbedoAt<'a> {
     shape: &'a ShapeAlbedo<'a>,
-    /// The first of six roughnesses and their weights.
-    start: usize,
-    weights: [f32; SIX],
-    view: PreparedView,
+    /// The first value of six roughnesses, and their weights, each in all lanes.
+    start: u32,
+    weights: [[f32x4; 2]; 3],
+    /// The roughness, no less than the first node's.
+    sigma: f32,
+    view: FastView,
 }
 
 impl ShapeAlbedoAt<'_> {
@@ -132,6 +193,7 @@ impl ShapeAlbedoAt<'_> {
     }
 
     /// Moments of the Fresnel weights at a view, each in [0, 1], with a total of at most 1.
+    #[inline]
     #[must_use]
     pub fn moments(&self, v: impl Into<[f32; 3]>) -> Moments {
         let cos = unit(vec3(v).z);
@@ -139,20 +201,18 @@ impl ShapeAlbedoAt<'_> {
     }
 
     /// The directional albedo E(v) with F = 1, in [0, 1].
+    #[inline]
     #[must_use]
     pub fn albedo(&self, v: impl Into<[f32; 3]>) -> f32 {
         1.0 - self.lost(v)
     }
 
     /// The share of light lost, 1 − E(v), with all its digits where E is close to 1.
+    #[inline]
     #[must_use]
     pub fn lost(&self, v: impl Into<[f32; 3]>) -> f32 {
         let cos = unit(vec3(v).z);
-        let [e] = if cos >= self.view.floor() as f32 {
-            self.interpolate(cos)
-        } else {
-            [self.rest(cos)[0]]
-        };
+        let e = if cos >= self.view.floor() { self.e(self.view.six(cos)) } else { self.below(cos) };
         0.0 - e
     }
 
@@ -176,31 +236,59 @@ impl ShapeAlbedoAt<'_> {
 
     /// The averages, as the channels of tables.
     fn average(&self) -> [f32; 3] {
-        let view = Elevation::Blend(&self.view);
-        less_mirror(over_views(&view, self.shape.views, &|cos| averaged(cos, self.rest(cos))))
+        let view = self.shape.view.prepare_shaped(self.sigma.into());
+        let rest = |cos| averaged(cos, self.rest(cos));
+        less_mirror(over_views(&Elevation::Blend(&view), self.shape.views, &rest))
     }
 
     /// E − 1 in [−1, 0], and the excess of the other moments over E times a mirror's.
+    #[inline]
     pub(super) fn rest(&self, cos: f32) -> [f32; 3] {
-        let at = |cos| self.interpolate(cos);
-        down_to_grazing(self.shape.masking, self.view.floor() as f32, cos, at)
+        let floor = self.view.floor();
+        let at = |cos: f32| {
+            let view = self.view.six(if cos > floor { cos } else { floor });
+            [self.e(view), self.channel(1, view), self.channel(2, view)]
+        };
+        down_to_grazing(self.shape.masking, floor, cos, at)
     }
 
-    /// The first N channels.
-    fn interpolate<const N: usize>(&self, cos: f32) -> [f32; N] {
-        let ShapeAlbedo { values, views, .. } = self.shape;
-        let (first, view) = six(self.view.clamped(cos), *views);
-        let mut sum = [0.0; N];
-        // A table of fewer than six roughnesses has fewer rows.
-        let rows = values[self.start * views..].chunks_exact(*views);
-        for (row, a) in rows.zip(self.weights) {
-            for (node, b) in row[first..first + SIX].iter().zip(view) {
-                for (sum, x) in sum.iter_mut().zip(node) {
-                    *sum += a * b * x;
+    /// E − 1 at a view lower than the first node.
+    #[cold]
+    #[inline(never)]
+    fn below(&self, cos: f32) -> f32 {
+        self.rest(cos)[0]
+    }
+
+    /// E − 1, at a place among the views.
+    #[inline(always)]
+    fn e(&self, view: (usize, SixLanes)) -> f32 {
+        within(self.channel(0, view), [-1.0, 0.0])
+    }
+
+    /// One channel at a place among the views: the roughnesses are combined first, then the views.
+    #[inline(always)]
+    fn channel(&self, channel: usize, (first, [low, high]): (usize, SixLanes)) -> f32 {
+        let values = &self.shape.channels[channel][..];
+        let mut at = self.start + first as u32;
+        let mut row = |weight: f32x4| {
+            let from = at as usize;
+            let row: &[f32; SIX] = values[from..from + SIX].first_chunk().expect("six");
+            at += self.shape.stride;
+            let [first, last]: [&[f32; 4]; 2] =
+                [row.first_chunk(), row.last_chunk()].map(|four| four.expect("of six"));
+            [f32x4::from(*first) * weight, f32x4::from(*last) * weight]
+        };
+        // Two sums at a time, which do not wait for each other.
+        let mut sums = self.weights[0].map(&mut row);
+        for pair in &self.weights[1..] {
+            for (sums, weight) in sums.iter_mut().zip(pair) {
+                for (sum, x) in sums.iter_mut().zip(row(*weight)) {
+                    *sum += x;
                 }
             }
         }
-        sum[0] = sum[0].clamp(-1.0, 0.0);
-        sum
+        let [[a, b], [c, d]] = sums;
+        let [a, b, c, d] = ((a + c) * low + (b + d) * high).to_array();
+        (a + b) + (c + d)
     }
 }

@@ -2,12 +2,17 @@
 
 use alloc::vec::Vec;
 
+use wide::f32x4;
+
+use microfacet_core::math::within;
+
 /// The number of nodes that the polynomial of albedo tables goes through.
 pub const SIX: usize = 6;
 
 /// The first of the `window` of `n` nodes that a polynomial goes through. The cell that ends at
 /// node `above` is in their middle, or as near to it as the ends allow: windows at the ends are
 /// shifted, not shortened.
+#[inline]
 fn first_node(above: usize, n: usize, window: usize) -> usize {
     above.saturating_sub(window / 2).min(n - window)
 }
@@ -48,10 +53,11 @@ pub(super) fn is_even(nodes: &[f64]) -> bool {
 /// node, and the weights. A t outside [0, 1] is taken at the nearer end, NaN at 0.
 #[inline]
 pub fn six(t: f32, n: usize) -> (usize, [f32; SIX]) {
-    // `max` takes NaN to 0, which `clamp` would keep.
-    let x = (t * (n - 1) as f32).max(0.0).min((n - 1) as f32);
-    let start = first_node(x as usize + 1, n, SIX);
-    (start, six_weights(x - start as f32))
+    // Of 32 bits a conversion is one instruction.
+    let last = (n - 1) as i32 as f32;
+    let x = within(t * last, [0.0, last]);
+    let start = first_node(x as i32 as usize + 1, n, SIX);
+    (start, six_weights(x - start as i32 as f32))
 }
 
 /// Weights of the polynomial through the nodes 0 … 5 at x.
@@ -70,6 +76,40 @@ pub(super) fn six_weights(x: f32) -> [f32; SIX] {
         right *= x - j as f32;
     }
     weights
+}
+
+/// The place between the first and the last of six nodes.
+pub const MIDDLE: f32 = 2.5;
+
+/// Weights of six nodes: of the first four, and of the last four, where those that are in both have
+/// 0. Lanes that are loaded from four nodes in a row need no node beyond the six.
+pub type SixLanes = [f32x4; 2];
+
+/// [`six`] in lanes: `x` is the place among the nodes 0, 1, … less [`MIDDLE`], and `last` the first
+/// of the last six nodes. Beyond the ends the polynomials of the ends go on.
+#[inline(always)]
+#[must_use]
+pub fn six_lanes(x: f32, last: f32) -> (usize, SixLanes) {
+    // A sum with this number is rounded to a whole number, which its last bits are. At a node
+    // either of the windows that meet there serves.
+    const SHIFT: f32 = 8_388_608.0;
+    let shifted = within(x, [0.0, last]) + SHIFT;
+    let x = x - (shifted - SHIFT);
+    ((shifted.to_bits() - SHIFT.to_bits()) as usize, lanes_about(x))
+}
+
+/// Weights of the polynomial through the nodes −5/2, −3/2 … 5/2 at x.
+#[inline(always)]
+fn lanes_about(x: f32) -> SixLanes {
+    let lanes = |nodes: [f32; 4]| f32x4::splat(x) - f32x4::from(nodes);
+    // The product over the other nodes, of which all lanes share some.
+    let upper = (x - 1.5) * (x - 2.5);
+    let lower = ((x + 2.5) * (x + 1.5)) * ((x + 0.5) * (x - 0.5));
+    let first = lanes([-1.5, -2.5, -2.5, -2.5]) * lanes([-0.5, -0.5, -1.5, -1.5]);
+    let third = lanes([0.5, 0.5, 0.5, -0.5])
+        * f32x4::from([-1.0 / 120.0, 1.0 / 24.0, -1.0 / 12.0, 1.0 / 12.0]);
+    let last = lanes([0.0, 0.0, 2.5, 1.5]) * f32x4::from([0.0, 0.0, -1.0 / 24.0, 1.0 / 120.0]);
+    [(first * third) * upper, last * lower]
 }
 
 /// Σ weightᵢ nodeᵢ over the six nodes from `start` on, for each channel.
@@ -135,6 +175,33 @@ mod tests {
             }
             assert_eq!([f32::NAN, -1.0].map(|t| six(t, n)), [six(0.0, n); 2]);
             assert_eq!(six(7.0, n), six(1.0, n));
+        }
+    }
+
+    #[test]
+    fn lanes_hold_the_same_weights() {
+        for n in [6, 7, 26] {
+            let last = (n - SIX) as f32;
+            for i in -1..=998 {
+                let x = i as f32 / 997.0 * (n - 1) as f32;
+                let (start, [low, high]) = six_lanes(x - MIDDLE, last);
+                let ([a, b, c, d], [none, nor, e, f]) = (low.to_array(), high.to_array());
+                assert_eq!([none, nor], [0.0; 2]);
+                // The six nodes are about x, as near as the ends allow.
+                let middle = start as f32 + MIDDLE;
+                let near = (x - middle).abs() < 0.501;
+                let at_end = (start == 0 && x < middle) || (start + SIX == n && x > middle);
+                assert!(near || at_end, "{n} nodes, {x}: {start}");
+                let mut off = 0.0;
+                for (got, want) in [a, b, c, d, e, f].into_iter().zip(six_weights(x - start as f32))
+                {
+                    off += (got - want).abs();
+                }
+                // The rounding of x.
+                assert!(off < 4e-7 * n as f32, "{n} nodes, {x}: off by {off}");
+            }
+            assert_eq!([f32::NAN, -7.0].map(|x| six_lanes(x, last).0), [0; 2]);
+            assert_eq!(six_lanes(77.0, last).0, n - SIX);
         }
     }
 

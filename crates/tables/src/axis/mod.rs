@@ -41,7 +41,7 @@ pub use log_shape::LogShape;
 pub use random_number::{MirroredRoot, OddRoot};
 pub use rational::Rational;
 pub use refractive_index::ReflectanceRoot;
-pub use view_blend::{PreparedView, ViewBlend};
+pub use view_blend::{FastBlend, FastView, PreparedView, ViewBlend};
 
 pub use random_number::{above_zero, roots};
 

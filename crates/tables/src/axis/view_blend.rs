@@ -5,11 +5,12 @@
 //! spacing.
 
 use serde::{Deserialize, Serialize};
+use wide::f32x4;
 
-use microfacet_core::math::sqrt64;
+use microfacet_core::math::{sqrt, sqrt64};
 
 use super::coordinate::{Coordinate, bisect, positive};
-use super::lagrange::SIX;
+use super::lagrange::{MIDDLE, SIX, SixLanes, six_lanes};
 
 /// The view coordinate of albedo tables, t ∈ [0, 1] of μ = cos θ_v ∈ [μ₀, 1], as
 /// [`Mapping::formula`](super::Mapping::formula) states it.
@@ -69,6 +70,23 @@ impl ViewBlend {
         self.prepare(sigma, f64::INFINITY)
     }
 
+    /// The coordinate as lookups in a table of `nodes` views take it, for a blend of one shape
+    /// ([`of_shape`](Self::of_shape)).
+    pub fn fast(&self, nodes: usize) -> FastBlend {
+        let Self { weight, normal, share, scale, spread, floor, slope, .. } = *self;
+        let single = |lanes: [f64; 4]| f32x4::from(lanes.map(|x| x as f32));
+        let rest = 1.0 - weight - normal;
+        FastBlend {
+            quotients: single([weight, 0.0, normal, 0.0]),
+            roots: single([rest * share, rest * (1.0 - share), 0.0, 0.0]),
+            knee: scale as f32,
+            turn: spread as f32,
+            floor: [floor, slope].map(|x| x as f32),
+            cells: (nodes - 1) as f32,
+            last: (nodes - SIX) as f32,
+        }
+    }
+
     /// Prepares the coordinate for a roughness σ > 0 and a shape γ.
     pub fn prepare(&self, sigma: f64, gamma: f64) -> PreparedView {
         let knee = kappa(self.scale, self.heavy, gamma) * sigma;
@@ -92,12 +110,14 @@ pub(super) fn harmonic(a: f64, b: f64) -> f64 {
 }
 
 /// sin θ, x and h of a view; `knee` is κσ.
+#[inline]
 pub(super) fn terms(cos: f64, knee: f64) -> (f64, f64, f64) {
     let sin = sqrt64((1.0 - cos) * (1.0 + cos));
     (sin, cos / (cos + knee * sin), cos / (1.0 + sin))
 }
 
 /// share·x^¼ + (1−share)·h^¼.
+#[inline]
 pub(super) fn fourth_roots(share: f64, x: f64, h: f64) -> f64 {
     let root = |x: f64| sqrt64(sqrt64(x));
     share * root(x) + (1.0 - share) * root(h)
@@ -122,6 +142,7 @@ impl PreparedView {
         self.floor
     }
 
+    #[inline]
     fn y(&self, cos: f64) -> f64 {
         let ViewBlend { weight, normal, share, .. } = self.blend;
         let (sin, x, h) = terms(cos, self.knee);
@@ -131,11 +152,13 @@ impl PreparedView {
     }
 
     /// t of cos θ ∈ [μ₀, 1].
+    #[inline]
     pub fn coordinate(&self, cos: f64) -> f64 {
         (self.y(cos) - self.start) / (1.0 - self.start)
     }
 
     /// t of any cos θ ∈ [0, 1]; a view with cos θ < μ₀ is taken at the first node.
+    #[inline]
     pub fn clamped(&self, cos: f32) -> f32 {
         if cos > self.floor as f32 { self.coordinate(f64::from(cos)) as f32 } else { 0.0 }
     }
@@ -143,6 +166,102 @@ impl PreparedView {
     /// cos θ of t ∈ [0, 1].
     pub fn quantity(&self, t: f64) -> f64 {
         if t >= 1.0 { 1.0 } else { bisect(self.floor, 1.0, t, |cos| self.coordinate(cos)) }
+    }
+}
+
+/// [`ViewBlend`] of one shape and of a table with some number of views, as lookups take it: in
+/// single precision and in lanes, of x, h, ν/(ν + sin θ) and 1.
+#[derive(Clone, Copy, Debug)]
+pub struct FastBlend {
+    /// Shares of the lanes, and of their fourth roots.
+    quotients: f32x4,
+    roots: f32x4,
+    /// κ and ν/σ.
+    knee: f32,
+    turn: f32,
+    /// The largest μ₀, and μ₀/σ as σ → 0.
+    floor: [f32; 2],
+    /// The number of nodes less one, and less six.
+    cells: f32,
+    last: f32,
+}
+
+impl FastBlend {
+    /// Prepares the coordinate for a roughness σ > 0.
+    #[inline]
+    #[must_use]
+    pub fn prepare(&self, sigma: f32) -> FastView {
+        let [most, slope] = [self.floor[0], self.floor[1] * sigma];
+        // Not 0 where σ is tiny, for which a lane would be 0/0 at the horizon or the normal.
+        let [knee, turn] = [self.knee, self.turn].map(|x| x * sigma + f32::MIN_POSITIVE);
+        let mut view = FastView {
+            quotients: self.quotients,
+            roots: self.roots,
+            constants: f32x4::from([0.0, 1.0, turn, 1.0]),
+            sines: f32x4::from([knee, 1.0, 1.0, 0.0]),
+            floor: most * (slope / (most + slope + f32::MIN_POSITIVE)),
+            scale: 0.0,
+            shift: 0.0,
+            last: self.last,
+        };
+        let start = view.y(view.floor);
+        view.scale = self.cells / (1.0 - start);
+        view.shift = -start * view.scale - MIDDLE;
+        view
+    }
+}
+
+/// [`FastBlend`] prepared for one roughness: [`PreparedView`] in single precision.
+///
+/// t errs by less than 1e-7 + 2e-7 t: most next to the normal, where albedos are level.
+#[derive(Clone, Copy, Debug)]
+pub struct FastView {
+    /// Shares of the lanes, and of their fourth roots.
+    quotients: f32x4,
+    roots: f32x4,
+    /// What the denominators hold beside cos θ: constants, and factors of sin θ.
+    constants: f32x4,
+    sines: f32x4,
+    floor: f32,
+    /// From y to the place among the nodes. Were the shares multiplied, a lookup would wait for all
+    /// that prepares it.
+    scale: f32,
+    shift: f32,
+    /// The first node of the last six.
+    last: f32,
+}
+
+impl FastView {
+    /// μ₀, the view of the first node.
+    #[inline]
+    #[must_use]
+    pub fn floor(&self) -> f32 {
+        self.floor
+    }
+
+    /// The first of the six nodes about cos θ ∈ [μ₀, 1], and their weights.
+    #[inline(always)]
+    #[must_use]
+    pub fn six(&self, cos: f32) -> (usize, SixLanes) {
+        six_lanes(self.position(cos), self.last)
+    }
+
+    /// The place among the nodes, less [`MIDDLE`].
+    #[inline(always)]
+    fn position(&self, cos: f32) -> f32 {
+        self.y(cos) * self.scale + self.shift
+    }
+
+    #[inline(always)]
+    fn y(&self, cos: f32) -> f32 {
+        let sin = sqrt((1.0 - cos) * (1.0 + cos));
+        let [x, both, others] =
+            [[1.0, 0.0, 0.0, 0.0], [1.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 1.0]].map(f32x4::from);
+        let over = both * cos + others * self.constants;
+        let lanes = over / ((x * cos + self.constants) + self.sines * sin);
+        let sum = lanes * self.quotients + lanes.sqrt().sqrt() * self.roots;
+        let [x, h, normal, _] = sum.to_array();
+        (x + h) + normal
     }
 }
 
@@ -198,5 +317,40 @@ mod tests {
         let view = ViewBlend::BAKED.prepare(0.3, 2.0);
         assert_eq!([0.0, 1e-7].map(|cos| view.clamped(cos)), [0.0; 2]);
         assert!((f64::from(view.clamped(0.4)) - view.coordinate(f64::from(0.4_f32))).abs() < 1e-7);
+    }
+
+    #[test]
+    fn lookups_read_the_same_coordinate() {
+        const NODES: usize = 33;
+        for gamma in [1.501, 1.6, 2.0, f64::INFINITY] {
+            let blend = ViewBlend::BAKED.of_shape(gamma);
+            for sigma in [1e-30_f32, 1e-8, 1e-5, 1e-3, 0.03, 0.3, 1.0, 3.0] {
+                let exact = blend.prepare_shaped(sigma.into());
+                let fast = blend.fast(NODES).prepare(sigma);
+                let floor = fast.floor();
+                assert!((f64::from(floor) / exact.floor() - 1.0).abs() < 3e-7);
+                let even = (0..=2000).map(|i| i as f32 / 2000.0);
+                let powers = (0..=2000).map(|i| 0.99_f32.powi(i));
+                let normal = (0..=2000).map(|i| 1.0 - i as f32 * f32::EPSILON / 2.0);
+                for cos in even.chain(powers).chain(normal).chain([floor]) {
+                    let cos = cos.max(floor);
+                    let place = f64::from(fast.position(cos)) + f64::from(MIDDLE);
+                    let t = exact.coordinate(cos.into());
+                    let off = place / (NODES - 1) as f64 - t;
+                    // Most next to the normal, where albedos are level.
+                    assert!(off.abs() < 1e-7 + 2e-7 * t, "{gamma} {sigma} {cos}: {off}");
+                    let (start, [low, high]) = fast.six(cos);
+                    let weights = [low, high].map(|lanes| lanes.to_array().map(f64::from));
+                    // Of the place of each node.
+                    let of = |lanes: [f64; 4], first: usize| -> f64 {
+                        (start + first..).zip(lanes).map(|(i, weight)| weight * i as f64).sum()
+                    };
+                    let read = of(weights[0], 0) + of(weights[1], 2);
+                    assert!((read - place).abs() < 2e-5, "sigma {sigma}, {cos}: {read}, {place}");
+                }
+                assert_eq!(fast.six(floor).0, 0);
+                assert_eq!(fast.six(1.0).0, NODES - SIX);
+            }
+        }
     }
 }
