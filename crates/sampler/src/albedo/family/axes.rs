@@ -12,115 +12,143 @@ use wide::f32x4;
 use super::octaves::{inverse, octaves};
 use super::spline::{THREE, cubic_weights, quadratic_weights};
 
-/// The axes that a material has a place on, as lanes: of shapes, of roughnesses, and of the
-/// roughnesses of averages.
+/// The axes that a material has a place on, as lanes: of shapes and of roughnesses.
 pub(super) const SHAPE: usize = 0;
 pub(super) const SIGMA: usize = 1;
-pub(super) const AVERAGE: usize = 2;
 
 /// The axes of the material, each with evenly spaced nodes along an ascending coordinate.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Axes {
     /// 2γ−3 of the smallest γ and of the largest.
     shapes: [f32; 2],
-    /// The smallest σ and the largest, and whether 0, a mirror, is below them.
+    /// The smallest σ and the largest.
     sigmas: [f32; 2],
-    mirror: bool,
-    /// The coordinates of the first nodes, nodes for each unit, and the last nodes.
+    /// The coordinates of the first nodes, and nodes for each unit.
     first: f32x4,
     density: f32x4,
-    last: f32x4,
-    /// Numbers of nodes.
-    pub(super) counts: [usize; 4],
+    /// Cells between nodes of roughnesses: 0 where all have one σ.
+    cells: usize,
+    /// The coordinate of the first roughness of averages, nodes for each unit, and cells.
+    averages: (f32, f32, usize),
 }
 
-/// The first of three coefficients along each axis, and their weights.
-pub(super) type Place = ([usize; 4], [f32x4; THREE]);
+/// The first of three coefficients along each axis, and their weights, as lanes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub(super) first: [usize; 2],
+    pub(super) weights: [f32x4; THREE],
+}
 
 impl Axes {
-    /// About the distances of nodes.
-    const STEPS: [f32; 3] = [0.352, 0.485, 0.65];
+    /// Cells between nodes of shapes, in every set: rows of a known length cost less to address.
+    pub(super) const SHAPES: usize = 34;
+    /// 2γ−3 of Beckmann: as good as infinite, and not so large that products overflow.
+    pub(super) const FLAT: f32 = 1e30;
+    /// About the distance of nodes of roughnesses: 34 cells in the default set.
+    const STEP: f32 = 0.485;
+    /// And of those of averages.
+    const AVERAGE_STEP: f32 = 0.65;
 
-    pub(super) fn new(gammas: [f64; 2], sigmas: [f32; 2], mirror: bool) -> Self {
-        let shapes = gammas.map(|gamma| (2.0 * gamma - 3.0) as f32);
-        let ends = [(sigmas[0], shapes[1]), (sigmas[1], shapes[0])];
-        let [first, end] = ends.map(|(sigma, d)| Self::coordinates(sigma, 1.0 / d));
+    pub(super) fn new(gammas: [f64; 2], sigmas: [f32; 2]) -> Self {
+        let shapes = gammas.map(|gamma| within((2.0 * gamma - 3.0) as f32, [0.0, Self::FLAT]));
+        let [first, end] = [0, 1].map(|end| Self::coordinates(sigmas[end], shapes[end]));
         let widths = (end - first).to_array();
-        let mut cells = [0.0; 4];
-        for (lane, step) in Self::STEPS.into_iter().enumerate() {
-            // One node where the ends are the same.
-            if widths[lane] > 1e-5 {
-                cells[lane] = libm::ceilf(widths[lane] / step).max(2.0);
-            }
-        }
-        let density: [f32; 4] = core::array::from_fn(|lane| match cells[lane] {
-            0.0 => 0.0,
-            cells => cells / widths[lane],
-        });
+        // All nodes at one place where the ends are the same.
+        let density = |width: f32, cells: usize| match width {
+            width if width > 1e-6 => cells as f32 / width,
+            _ => 0.0,
+        };
+        let cells = |width: f32, step: f32| match width {
+            width if width > 1e-6 => libm::ceilf(width / step).max(2.0) as usize,
+            _ => 0,
+        };
+        let [start, width] = {
+            let [start, end] = sigmas.map(Self::of_average);
+            [start, end - start]
+        };
+        let averages = cells(width, Self::AVERAGE_STEP);
+        let cells = cells(widths[SIGMA], Self::STEP);
+        let densities =
+            [density(widths[SHAPE], Self::SHAPES), density(widths[SIGMA], cells), 0.0, 0.0];
         Self {
             shapes,
             sigmas,
-            mirror,
             first,
-            density: density.into(),
-            last: cells.into(),
-            counts: cells.map(|cells| cells as usize + 1),
+            density: densities.into(),
+            cells,
+            averages: (start, density(width, averages), averages),
         }
     }
 
-    /// Of the shape, octaves of 1 + 10 q, q = 1/(2γ−3). Of the roughness, what has close to even
-    /// ratios near 0.02, wide ratios below, and finer ones above, as the coordinate of stored
-    /// tables, [`LogRoughness`](microfacet_tables::axis::LogRoughness). For averages, octaves and
-    /// finer above 1.
+    /// Of the shape, (d/(d+3))^¼ with d = 2γ−3: close to even ratios of d for small d, and to even
+    /// steps of 1/d next to Beckmann. Of the roughness, what has close to even ratios near 0.02,
+    /// wide ratios below, and finer ones above, as the coordinate of stored tables,
+    /// [`LogRoughness`](microfacet_tables::axis::LogRoughness): between their nodes the smallest
+    /// losses have waves, which other nodes would take for the losses themselves.
     #[inline(always)]
-    fn coordinates(sigma: f32, q: f32) -> f32x4 {
-        let logs = octaves(f32x4::from([1.0 + 10.0 * q, 1.0 + 60.0 * sigma, sigma, 1.0]));
-        let [shape, near, far, _] = logs.to_array();
-        f32x4::from([shape, near + 0.2 * far + sigma, far + 2.0 * sigma, 0.0])
+    fn coordinates(sigma: f32, d: f32) -> f32x4 {
+        let shape = sqrt(sqrt(d / (d + 3.0)));
+        let [near, far, ..] =
+            octaves(f32x4::from([1.0 + 60.0 * sigma, sigma, 1.0, 1.0])).to_array();
+        f32x4::from([shape, near + 0.2 * far + sigma, 0.0, 0.0])
     }
 
-    /// σ and q = 1/(2γ−3), clamped to what is covered; NaN counts as the smallest. A mirror has
-    /// σ = 0.
+    /// Of the roughness of averages, octaves and finer above 1.
+    fn of_average(sigma: f32) -> f32 {
+        octaves(f32x4::splat(sigma)).to_array()[0] + 2.0 * sigma
+    }
+
+    /// σ and d = 2γ−3, clamped to what is covered; NaN counts as the smallest.
     #[inline(always)]
     pub(super) fn clamped(&self, sigma: f32, gamma: f32) -> (f32, f32) {
-        let is_mirror = self.mirror && sigma <= 0.0;
-        let sigma = if is_mirror { 0.0 } else { within(sigma, self.sigmas) };
-        (sigma, 1.0 / within(2.0 * gamma - 3.0, self.shapes))
+        (within(sigma, self.sigmas), within(2.0 * gamma - 3.0, self.shapes))
     }
 
-    /// The place of a clamped σ and q.
+    /// The place of a clamped σ and d.
     #[inline(always)]
-    pub(super) fn place(&self, sigma: f32, q: f32) -> Place {
-        let x = (Self::coordinates(sigma, q) - self.first) * self.density;
-        quadratic_weights(x.fast_max(f32x4::ZERO).fast_min(self.last))
+    pub(super) fn place(&self, sigma: f32, d: f32) -> Place {
+        // Below 0 and above the last node by rounding at most, of which the nearest node is that one.
+        quadratic_weights((Self::coordinates(sigma, d) - self.first) * self.density)
     }
 
-    /// q of the nodes of shapes; σ of the nodes of roughnesses, and of those of averages.
+    /// The first of three roughnesses of averages at a clamped σ, and their weights.
+    #[inline]
+    pub(super) fn average(&self, sigma: f32) -> (usize, [f32; THREE]) {
+        let (first, density, _) = self.averages;
+        let x = (Self::of_average(sigma) - first) * density;
+        let place = quadratic_weights(f32x4::splat(x));
+        (place.first[SIGMA], place.weights.map(|weight| weight.to_array()[SIGMA]))
+    }
+
+    /// d of the nodes of shapes; σ of the nodes of roughnesses, and of those of averages.
     pub(super) fn nodes(&self) -> [Vec<f32>; 3] {
-        let nodes = |lane: usize, ends: [f32; 2], coordinate: &dyn Fn(f32) -> f32x4| {
-            let [first, density] = [self.first, self.density].map(|lanes| lanes.to_array()[lane]);
-            let of = |x: f32| coordinate(x).to_array()[lane];
-            let count = self.counts[lane];
-            let target = |i: usize| first + if count > 1 { i as f32 / density } else { 0.0 };
-            (0..count).map(|i| inverse(ends, target(i), of)).collect::<Vec<_>>()
-        };
-        let [last, first] = self.shapes.map(|d| 1.0 / d);
-        let of_sigma = |sigma| Self::coordinates(sigma, 1.0);
+        let nodes =
+            |ends: [f32; 2], first: f32, density: f32, cells: usize, of: &dyn Fn(f32) -> f32| {
+                let target =
+                    |i: usize| first + if density > 0.0 { i as f32 / density } else { 0.0 };
+                (0..=cells).map(|i| inverse(ends, target(i), of)).collect::<Vec<_>>()
+            };
+        let [first, density] = [self.first, self.density].map(f32x4::to_array);
+        let shape = |d| Self::coordinates(1.0, d).to_array()[SHAPE];
+        let sigma = |sigma| Self::coordinates(sigma, 1.0).to_array()[SIGMA];
+        let (start, steps, averages) = self.averages;
         [
-            nodes(SHAPE, [first, last], &|q| Self::coordinates(1.0, q)),
-            nodes(SIGMA, self.sigmas, &of_sigma),
-            nodes(AVERAGE, self.sigmas, &of_sigma),
+            nodes(self.shapes, first[SHAPE], density[SHAPE], Self::SHAPES, &shape),
+            nodes(self.sigmas, first[SIGMA], density[SIGMA], self.cells, &sigma),
+            nodes(self.sigmas, start, steps, averages, &Self::of_average),
         ]
     }
 }
 
-/// Views: t = share·x^¼ + (1−share)·h^¼ with x = μ/(μ + k sin θ) and h = μ/(1 + sin θ).
+/// Views: t = share·x^¼ + (1−share)·h^¼ with x = μ/(μ + κσ sin θ) and h = μ/(1 + sin θ).
 ///
 /// x follows the change at grazing, within the roughness of the horizon, and h that of the moments
 /// over the hemisphere.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct View {
-    /// κσ.
+    /// d = 2γ−3.
+    shape: f32,
+    /// dκσ.
     knee: f32,
 }
 
@@ -128,25 +156,22 @@ impl View {
     pub(super) const CELLS: usize = 26;
     const SHARE: f32 = 0.55;
 
-    /// Of q = 1/(2γ−3): κ = 6 + q follows the range of masking as that grows for γ → 3/2.
+    /// κ = 6 + 1/d follows the range of masking as that grows for γ → 3/2.
     #[inline(always)]
-    pub(super) fn new(sigma: f32, q: f32) -> Self {
-        // Not 0 for a mirror, for which x would be 0/0 at the horizon.
-        Self { knee: (6.0 + q) * sigma + 1e-20 }
+    pub(super) fn new(sigma: f32, d: f32) -> Self {
+        Self { shape: d, knee: 6.0 * sigma * d + sigma }
     }
 
     /// About the cosine, over sin θ, at which half of the light is lost: σ where tails are short.
     pub(super) fn reach(self) -> f32 {
-        self.knee / 6.0
+        self.knee / (6.0 * self.shape)
     }
 
-    /// The cell of cos θ ∈ [0, 1], which is also the first of four coefficients, and their weights.
+    /// The first of four coefficients at cos θ ∈ [0, 1], and their weights. At the normal the first
+    /// may be `CELLS`, and the last weight is next to 0.
     #[inline(always)]
     pub(super) fn weights(self, cos: f32) -> (usize, f32x4) {
-        // Less than the number of cells by an ulp.
-        const LAST: f32 = (View::CELLS as f32).next_down();
-        let x = self.coordinate(cos);
-        cubic_weights(if x < LAST { x } else { LAST })
+        cubic_weights(self.coordinate(cos))
     }
 
     /// In cells.
@@ -154,17 +179,17 @@ impl View {
     fn coordinate(self, cos: f32) -> f32 {
         const SHARES: [f32; 2] =
             [View::SHARE * View::CELLS as f32, (1.0 - View::SHARE) * View::CELLS as f32];
-        let sin = sqrt((1.0 - cos) * (1.0 + cos));
-        // Of lanes that were written one by one, the load of all would wait for the writes.
-        let [x, h] = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0]].map(f32x4::from);
-        let sum = f32x4::from([cos, 1.0, 1.0, 1.0]) + (x * self.knee + h) * sin;
-        let [x, h, ..] = (f32x4::splat(cos) / sum).sqrt().sqrt().to_array();
+        let sin = sqrt(1.0 - cos * cos);
+        // Both fractions of x are times d, so that no division waits for another.
+        let [part, rest, one] =
+            [self.shape, self.knee, self.shape * cos].map(|x| f32x4::from([x, 1.0, 1.0, 1.0]));
+        let [x, h, ..] = ((part * cos) / (one + rest * sin)).sqrt().sqrt().to_array();
         SHARES[0] * x + SHARES[1] * h
     }
 
     /// h^¼ of the nodes, ascending from 0 to 1.
     pub(super) fn nodes(self) -> [f64; Self::CELLS + 1] {
-        let (knee, share) = (f64::from(self.knee), f64::from(Self::SHARE));
+        let (knee, share) = (f64::from(self.knee) / f64::from(self.shape), f64::from(Self::SHARE));
         let coordinate = |root: f64| {
             let h = (root * root) * (root * root);
             let x = root * sqrt64(sqrt64(2.0 / (2.0 * h + knee * (1.0 - h * h))));
@@ -208,40 +233,54 @@ mod tests {
 
     #[test]
     fn nodes_are_where_the_coordinates_say() {
-        let axes = Axes::new([1.501, f64::INFINITY], [1e-8, 3.0], true);
-        let nodes = axes.nodes();
-        assert_eq!([nodes[SHAPE][0], nodes[SIGMA][0], nodes[AVERAGE][0]], [0.0, 1e-8, 1e-8]);
+        let axes = Axes::new([1.501, f64::INFINITY], [1e-8, 3.0]);
+        let [shapes, sigmas, averages] = axes.nodes();
+        for (i, &sigma) in averages.iter().enumerate() {
+            let (first, [below, _, above]) = axes.average(sigma);
+            assert!((first as f32 + above - below - i as f32).abs() < 1e-4, "{i}");
+        }
+        let nodes = [shapes, sigmas];
+        assert_eq!([nodes[SHAPE][Axes::SHAPES], nodes[SIGMA][0]], [Axes::FLAT, 1e-8]);
+        assert_eq!(nodes.each_ref().map(Vec::len), [Axes::SHAPES + 1, 35]);
         for (lane, nodes) in nodes.iter().enumerate() {
-            assert_eq!(nodes.len(), axes.counts[lane]);
             for (i, &x) in nodes.iter().enumerate() {
-                let (start, weights) =
+                let Place { first, weights } =
                     if lane == SHAPE { axes.place(0.1, x) } else { axes.place(x, 1.0) };
                 let [below, _, above] = weights.map(|weight| weight.to_array()[lane]);
-                let x = start[lane] as f32 + above - below;
+                let x = first[lane] as f32 + above - below;
                 assert!((x - i as f32).abs() < 1e-4, "{lane} {i}: {x}");
             }
         }
-        for (sigma, q) in [(1e-8, 500.0), (0.01, 0.0), (3.0, 1.0)] {
-            let view = View::new(sigma, q);
+        for (sigma, d) in [(1e-8, 0.002), (0.01, Axes::FLAT), (3.0, 1.0)] {
+            let view = View::new(sigma, d);
             for (i, root) in view.nodes().into_iter().enumerate() {
                 let [cos, sin] = View::direction(root);
                 assert!((cos * cos + sin * sin - 1.0).abs() < 1e-14);
                 let x = view.coordinate(cos as f32);
                 // Next to the normal it falls with sin θ, of which an ulp of cos θ leaves 3e-4.
-                assert!((x - i as f32).abs() < if i < 25 { 2e-4 } else { 0.02 }, "{sigma} {i} {x}");
+                assert!(
+                    (x - i as f32).abs() < if i < 25 { 2e-4 } else { 0.02 },
+                    "{sigma} {d} {i} {x}"
+                );
             }
         }
     }
 
     #[test]
     fn what_is_outside_is_clamped() {
-        let axes = Axes::new([1.6, 10.0], [0.1, 1.0], true);
-        let q = [1.0, 1.5, 1.6, f32::NAN].map(|gamma| axes.clamped(0.2, gamma).1);
-        assert!(q.iter().all(|q| (q - 5.0).abs() < 1e-5), "{q:?}");
-        assert_eq!([10.0, f32::INFINITY].map(|gamma| axes.clamped(0.2, gamma).1), [1.0 / 17.0; 2]);
+        let axes = Axes::new([1.6, 10.0], [0.1, 1.0]);
+        let d = [1.0, 1.5, 1.6, f32::NAN].map(|gamma| axes.clamped(0.2, gamma).1);
+        assert!(d.iter().all(|d| (d - 0.2).abs() < 1e-6), "{d:?}");
+        assert_eq!([10.0, f32::INFINITY].map(|gamma| axes.clamped(0.2, gamma).1), [17.0; 2]);
         let clamped = [0.0, -1.0, 1e-9, f32::NAN, 9.0].map(|sigma| axes.clamped(sigma, 2.0).0);
-        assert_eq!(clamped, [0.0, 0.0, 0.1, 0.1, 1.0]);
-        assert_eq!(Axes::new([2.0, 2.0], [0.1, 1.0], false).clamped(0.0, 2.0), (0.1, 1.0));
-        assert_eq!(Axes::new([2.0, 2.0], [0.1, 0.1], false).counts, [1; 4]);
+        assert_eq!(clamped, [0.1, 0.1, 0.1, 0.1, 1.0]);
+        for (sigma, d) in [(0.1, d[0]), (1.0, 17.0), (1.0, d[0])] {
+            let [shape, roughness] = axes.place(sigma, d).first;
+            assert_eq!(shape, if d == 17.0 { Axes::SHAPES } else { 0 });
+            assert_eq!(roughness, if sigma == 1.0 { axes.cells } else { 0 });
+        }
+        let one = Axes::new([2.0, 2.0], [0.1, 0.1]);
+        assert_eq!((one.clamped(0.0, 2.0), one.place(0.1, 1.0).first), ((0.1, 1.0), [0; 2]));
+        assert_eq!(one.nodes().map(|nodes| nodes.len()), [Axes::SHAPES + 1, 1, 1]);
     }
 }

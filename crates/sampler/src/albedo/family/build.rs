@@ -8,7 +8,7 @@ use microfacet_tables::{Mapping, Table};
 
 use super::axes::{Axes, View};
 use super::spline::{cubic, quadratic};
-use super::{FamilyAlbedo, LEAST, VIEWS};
+use super::{FamilyAlbedo, LEAST, SHAPES, VIEWS};
 use crate::albedo::moments::{averaged, less_mirror};
 use crate::albedo::shape::ShapeAlbedo;
 
@@ -24,43 +24,40 @@ impl FamilyAlbedo {
         let ends = [range.min, range.max].map(|sigma| sigma.max(first) as f32);
         let mut family = Self {
             masking: table.subject.masking?,
-            axes: Axes::new(gammas, ends, range.min <= 0.0),
-            values: Vec::new(),
-            channel: 0,
-            shape: 0,
+            axes: Axes::new(gammas, ends),
+            mirror: range.min <= 0.0,
+            values: Default::default(),
             averages: Vec::new(),
         };
-        let gamma = |q: f32| (1.5 + 0.5 / f64::from(q)).clamp(gammas[0], gammas[1]);
+        let gamma = |d: f32| match d {
+            Axes::FLAT => gammas[1],
+            d => (1.5 + 0.5 * f64::from(d)).clamp(gammas[0], gammas[1]),
+        };
         let [shapes, sigmas, averages] = family.axes.nodes();
 
         let mut all = Vec::new();
-        for &q in &shapes {
-            let shape = ShapeAlbedo::of(table, gamma(q))?;
-            let rows = sigmas.iter().flat_map(|&sigma| row(&shape, sigma, q));
-            all.extend(quadratic(rows.collect(), 3 * VIEWS));
+        for &d in &shapes {
+            let shape = ShapeAlbedo::of(table, gamma(d))?;
+            all.push(sigmas.iter().flat_map(|&sigma| row(&shape, sigma, d)).collect());
         }
-        let width = all.len() / shapes.len();
-        let all = quadratic(all, width);
-        let channel = |i: usize| all.iter().skip(i).step_by(3).map(|&x| x as f32);
-        family.values = (0..3).flat_map(channel).collect();
-        (family.channel, family.shape) = (all.len() / 3, width / 3);
+        let all = splines(all, 3 * VIEWS);
+        family.values = core::array::from_fn(|i| {
+            let channel = all.iter().skip(i).step_by(3).map(|&x| x as f32);
+            // At the normal the last lookup reads, with a weight of 0, one coefficient beyond.
+            channel.chain([0.0]).collect()
+        });
 
-        let mut all = Vec::new();
-        for &q in &shapes {
-            let nodes = averages.iter().flat_map(|&sigma| family.integrated(sigma, q));
-            all.extend(quadratic(nodes.collect(), 3));
-        }
-        let width = all.len() / shapes.len();
-        let all = quadratic(all, width);
+        let nodes = |&d: &f32| averages.iter().flat_map(|&s| family.integrated(s, d)).collect();
+        let all = splines(shapes.iter().map(nodes).collect(), 3);
         let nodes = all.chunks_exact(3).map(|node| [node[0], node[1], node[2], 0.0]);
         family.averages = nodes.map(|node| node.map(|x| x as f32)).collect();
         Some(family)
     }
 
-    /// The averages over views of the lookups at σ and q: log₂(1 − E_avg) and the other channels.
-    fn integrated(&self, sigma: f32, q: f32) -> [f64; 3] {
+    /// The averages over views of the lookups at σ and d = 2γ−3: log₂(1 − E_avg) and the other channels.
+    fn integrated(&self, sigma: f32, d: f32) -> [f64; 3] {
         const RULE: [(f64, f64); 2] = gauss_legendre();
-        let place = self.place(sigma, q);
+        let place = self.place(sigma, d);
         let mut sum = [0.0; 3];
         for ends in place.view.nodes().windows(2) {
             let width = ends[1] - ends[0];
@@ -81,10 +78,20 @@ impl FamilyAlbedo {
     }
 }
 
+/// The coefficients by σ and γ of values of `width` numbers at each node: by γ, by σ.
+fn splines(shapes: Vec<Vec<f64>>, width: usize) -> Vec<f64> {
+    let all: Vec<f64> = shapes.into_iter().flat_map(|values| quadratic(values, width)).collect();
+    let row = all.len() / (SHAPES - 2);
+    let all = quadratic(all, row);
+    let place = |i: usize, j: usize| j * row + i * width;
+    let at = |(i, j)| all[place(i, j)..][..width].iter().copied();
+    (0..row / width).flat_map(|i| (0..SHAPES).map(move |j| (i, j))).flat_map(at).collect()
+}
+
 /// The coefficients along the view at one roughness, three channels for each.
-fn row(shape: &ShapeAlbedo<'_>, sigma: f32, q: f32) -> Vec<f64> {
+fn row(shape: &ShapeAlbedo<'_>, sigma: f32, d: f32) -> Vec<f64> {
     let at = shape.at(sigma);
-    let mut nodes = View::new(sigma, q).nodes().map(|root| {
+    let mut nodes = View::new(sigma, d).nodes().map(|root| {
         let [e, bias, f82] = at.rest(View::direction(root)[0] as f32).map(f64::from);
         [sqrt64(-e), bias, f82]
     });

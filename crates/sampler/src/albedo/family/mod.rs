@@ -16,17 +16,18 @@ use microfacet_core::Masking;
 use microfacet_core::math::unit;
 use wide::f32x4;
 
-use self::axes::{AVERAGE, Axes, Place, SHAPE, SIGMA, View};
+use self::axes::{Axes, Place, SHAPE, SIGMA, View};
 use self::spline::{FOUR, THREE};
 use super::moments::Moments;
 use crate::elementary::exp2;
 use crate::vector::vec3;
 
-/// Coefficients along the view.
+/// Coefficients along the view, and along the shape.
 const VIEWS: usize = View::CELLS + 3;
-/// What a lookup reads of one shape: from the first of four coefficients of the first of three
-/// roughnesses to the last of the last.
-const PART: usize = 2 * VIEWS + FOUR;
+const SHAPES: usize = Axes::SHAPES + 3;
+/// What a lookup reads of one channel: from the first of four coefficients of the first of three
+/// shapes of the first of three roughnesses to the last of the last.
+const PART: usize = 2 * SHAPES * VIEWS + 2 * VIEWS + FOUR;
 
 /// The directional albedo of the family under one form of masking, to be read at any σ and γ: for
 /// renderers that take them from textures.
@@ -59,13 +60,13 @@ const PART: usize = 2 * VIEWS + FOUR;
 pub struct FamilyAlbedo {
     masking: Masking,
     axes: Axes,
-    /// Coefficients of √(1 − E), of which small losses keep their order of magnitude, then of the
-    /// excess of bias, then of F82: by γ, by σ, by view.
-    values: Vec<f32>,
-    /// How far one channel is from the next, and one shape.
-    channel: usize,
-    shape: usize,
-    /// Coefficients of log₂(1 − E_avg) and of the averages of the other two: by γ, by σ.
+    /// Whether σ = 0, a mirror, is covered.
+    mirror: bool,
+    /// Coefficients of √(1 − E), of which small losses keep their order of magnitude, of the excess
+    /// of bias, and of that of F82: by σ, by γ, by view.
+    values: [Vec<f32>; 3],
+    /// Coefficients of log₂(1 − E_avg) and of the averages of the other two: by σ, by γ. They have
+    /// nodes of σ of their own, since the smallest averages too are kept with their digits.
     averages: Vec<[f32; 4]>,
 }
 
@@ -78,14 +79,16 @@ impl FamilyAlbedo {
     #[inline]
     #[must_use]
     pub fn at(&self, sigma: f32, gamma: f32) -> AlbedoAt<'_> {
-        let (sigma, q) = self.axes.clamped(sigma, gamma);
-        self.place(sigma, q)
+        let mirror = self.mirror & (sigma <= 0.0);
+        let (sigma, d) = self.axes.clamped(sigma, gamma);
+        AlbedoAt { mirror, ..self.place(sigma, d) }
     }
 
+    /// At a clamped σ and d = 2γ−3.
     #[inline(always)]
-    fn place(&self, sigma: f32, q: f32) -> AlbedoAt<'_> {
-        let place = self.axes.place(sigma, q);
-        AlbedoAt { family: self, place, view: View::new(sigma, q), mirror: sigma == 0.0 }
+    fn place(&self, sigma: f32, d: f32) -> AlbedoAt<'_> {
+        let place = self.axes.place(sigma, d);
+        AlbedoAt { family: self, place, sigma, view: View::new(sigma, d), mirror: false }
     }
 
     /// The form of masking.
@@ -97,7 +100,8 @@ impl FamilyAlbedo {
     /// The memory that it takes, in bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        size_of::<Self>() + size_of_val(&self.values[..]) + size_of_val(&self.averages[..])
+        let values = self.values.iter().map(|channel| size_of_val(&channel[..]));
+        size_of::<Self>() + values.sum::<usize>() + size_of_val(&self.averages[..])
     }
 }
 
@@ -111,8 +115,9 @@ pub struct AlbedoAt<'a> {
     family: &'a FamilyAlbedo,
     /// Where σ and γ are among the nodes.
     place: Place,
-    mirror: bool,
+    sigma: f32,
     view: View,
+    mirror: bool,
 }
 
 impl AlbedoAt<'_> {
@@ -188,37 +193,36 @@ impl AlbedoAt<'_> {
 
     #[inline(always)]
     fn lost_at(&self, along: (usize, f32x4)) -> f32 {
+        if self.mirror {
+            return 0.0;
+        }
         let root = self.channel(0, along);
         let lost = root * root;
-        if self.mirror {
-            0.0
-        } else if lost < 1.0 {
-            lost
-        } else {
-            1.0
-        }
+        if lost < 1.0 { lost } else { 1.0 }
     }
 
     /// The square root of 1 − E, or the excess of another moment.
     #[inline(always)]
     fn channel(&self, channel: usize, (cell, along): (usize, f32x4)) -> f32 {
-        let (family, (first, weights)) = (self.family, &self.place);
-        let [a, b, c] = weights.map(|weight| weight.to_array()[SIGMA]);
-        let mut at =
-            channel * family.channel + first[SHAPE] * family.shape + first[SIGMA] * VIEWS + cell;
-        let mut sum = f32x4::ZERO;
-        for weight in weights {
-            let weight = weight.to_array()[SHAPE];
-            let part: &[f32; PART] = family.values[at..].first_chunk().expect("in the volume");
-            at += family.shape;
-            let four = |j: usize| -> f32x4 {
-                let four: &[f32; FOUR] = part[j * VIEWS..].first_chunk().expect("in the part");
-                f32x4::from(*four)
-            };
-            sum += (four(0) * a + four(1) * b + four(2) * c) * weight;
-        }
-        let [a, b, c, d] = (sum * along).to_array();
-        (a + b) + (c + d)
+        let [shape, sigma] = self.place.first;
+        let at = (sigma * SHAPES + shape) * VIEWS + cell;
+        let from = &self.family.values[channel][at..];
+        let part: &[f32; PART] = from.first_chunk().expect("in the volume");
+        let four = |i: usize, j: usize| -> f32x4 {
+            let four = part[(i * SHAPES + j) * VIEWS..].first_chunk::<FOUR>();
+            f32x4::from(*four.expect("in the part"))
+        };
+        let [a, b, c] = self.weights_along(SHAPE);
+        let of = |i: usize| four(i, 0) * a + four(i, 1) * b + four(i, 2) * c;
+        let [d, e, f] = self.weights_along(SIGMA);
+        let [a, b, c, d] = ((of(0) * d + of(1) * e + of(2) * f) * along).to_array();
+        (a + c) + (b + d)
+    }
+
+    /// The weights of three coefficients along an axis.
+    #[inline(always)]
+    fn weights_along(&self, lane: usize) -> [f32; THREE] {
+        self.place.weights.map(|weight| weight.to_array()[lane])
     }
 
     /// The averages, as the channels of tables.
@@ -226,14 +230,13 @@ impl AlbedoAt<'_> {
         if self.mirror {
             return [0.0; 3];
         }
-        let (first, weights) = &self.place;
+        let shapes = self.weights_along(SHAPE);
+        let (first, sigmas) = self.family.axes.average(self.sigma);
         let mut sum = f32x4::ZERO;
-        for (i, a) in weights.iter().enumerate() {
-            let a = a.to_array()[SHAPE];
-            let first =
-                (first[SHAPE] + i) * (self.family.axes.counts[AVERAGE] + 2) + first[AVERAGE];
-            for (node, b) in self.family.averages[first..first + THREE].iter().zip(weights) {
-                sum += f32x4::from(*node) * (a * b.to_array()[AVERAGE]);
+        for (i, a) in sigmas.into_iter().enumerate() {
+            let first = (first + i) * SHAPES + self.place.first[SHAPE];
+            for (node, b) in self.family.averages[first..first + THREE].iter().zip(shapes) {
+                sum += f32x4::from(*node) * (a * b);
             }
         }
         let [log, bias, f82, _] = sum.to_array();

@@ -7,6 +7,8 @@ use alloc::vec::Vec;
 
 use wide::{bytemuck, f32x4, i32x4};
 
+use super::axes::Place;
+
 /// How many coefficients a quadratic takes.
 pub(super) const THREE: usize = 3;
 /// How many coefficients a cubic takes.
@@ -22,28 +24,31 @@ fn nearest(x: f32x4) -> (i32x4, f32x4) {
     (bits & i32x4::splat(0xffff), x - (shifted - SHIFT))
 }
 
-/// The first of the three coefficients at x ∈ [0, nodes − 1], and their weights; along four axes.
+/// The first of the three coefficients at x ∈ [0, nodes − 1], and their weights; along two axes.
 #[inline(always)]
-pub(super) fn quadratic_weights(x: f32x4) -> ([usize; FOUR], [f32x4; THREE]) {
+pub(super) fn quadratic_weights(x: f32x4) -> Place {
     let (start, d) = nearest(x);
-    let (below, above, half) = (d - 0.5, d + 0.5, f32x4::splat(0.5));
-    let weights = [half * below * below, f32x4::splat(0.75) - d * d, half * above * above];
-    (start.to_array().map(|i| i as usize), weights)
+    // (½−d)²/2, ¾−d², (½+d)²/2.
+    let half = d * 0.5;
+    let ends = half * d + 0.125;
+    let weights = [ends - half, f32x4::ONE - (ends + ends), ends + half];
+    let [a, b, ..] = start.to_array();
+    Place { first: [a as usize, b as usize], weights }
 }
 
-/// The cell of x ∈ [0, cells), which is also the first of its four coefficients, and their weights.
+/// The cell of x ∈ [0, cells], which is also the first of its four coefficients, and their weights.
+/// x = cells may also count to a cell beyond, with 0 for the weight of its last coefficient.
 #[inline(always)]
 pub(super) fn cubic_weights(x: f32) -> (usize, f32x4) {
-    // Powers of the share x of the cell: (1−x)³/6, …, x³/6.
-    const SIXTH: f32 = 1.0 / 6.0;
+    // Powers of the distance d = x − ½ from the middle of the cell: (½−d)³/6, …, (½+d)³/6.
     const POWERS: [[f32; FOUR]; FOUR] = [
-        [SIXTH, 4.0 * SIXTH, SIXTH, 0.0],
-        [-0.5, 0.0, 0.5, 0.0],
-        [0.5, -1.0, 0.5, 0.0],
-        [-SIXTH, 0.5, -0.5, SIXTH],
+        [1.0 / 48.0, 23.0 / 48.0, 23.0 / 48.0, 1.0 / 48.0],
+        [-0.125, -0.625, 0.625, 0.125],
+        [0.25, -0.25, -0.25, 0.25],
+        [-1.0 / 6.0, 0.5, -0.5, 1.0 / 6.0],
     ];
-    let (cell, d) = nearest(f32x4::splat(x - 0.5));
-    let (x, [a, b, c, d]) = (d + 0.5, POWERS.map(f32x4::from));
+    let (cell, x) = nearest(f32x4::splat(x - 0.5));
+    let [a, b, c, d] = POWERS.map(f32x4::from);
     (cell.to_array()[0] as usize, a + x * (b + x * (c + x * d)))
 }
 
@@ -141,8 +146,8 @@ mod tests {
     }
 
     fn one(x: f32) -> (usize, [f32; THREE]) {
-        let (start, weights) = quadratic_weights(f32x4::splat(x));
-        (start[1], weights.map(|weight| weight.to_array()[1]))
+        let Place { first, weights } = quadratic_weights(f32x4::splat(x));
+        (first[1], weights.map(|weight| weight.to_array()[1]))
     }
 
     #[test]
