@@ -2,7 +2,8 @@
 
 use glam::{DVec3, Vec3};
 use microfacet_model::{
-    Masking, MicrofacetDistribution, SignedSlope, StudentT, VisibleSlope, across_cdf,
+    AlbedoIntegrator, Masking, MicrofacetDistribution, SignedSlope, StudentT, VisibleSlope,
+    across_cdf,
 };
 
 use crate::inputs::Inputs;
@@ -106,6 +107,15 @@ pub(crate) fn density_error(rival: &Rival<Evaluate>, normals: &Inputs) -> Error 
 pub(crate) fn d_error(truth: &StudentT, m: Vec3, d: f32) -> Option<f64> {
     let exact = truth.d(m.as_dvec3());
     (exact > 1e-37).then(|| (f64::from(d) / exact - 1.0).abs())
+}
+
+/// The absolute error of one E, height-correlated.
+pub(crate) fn e_error(truth: &StudentT, v: Vec3, e: f32) -> f64 {
+    let cos = f64::from(v.z).clamp(0.0, 1.0);
+    let exact =
+        AlbedoIntegrator::new(*truth.shape(), 1e-6).reflection(truth.sigma_x(), cos, |_| [1.0]);
+    let [exact] = exact.expect("a cosine and a roughness").of(Masking::HeightCorrelated);
+    (f64::from(e) - exact).abs()
 }
 
 fn evaluated(rival: &Rival<Evaluate>, inputs: &Inputs) -> Vec<f32> {

@@ -31,7 +31,11 @@ pub(crate) const RANDOM: &str = "sample, sigma and gamma random";
 pub(crate) const PEELED: &str = "sample, sigma random, gamma random < 1.8";
 const OF_GGX: &str = "sample of GGX, sigma per hit";
 pub(crate) const ALBEDO: &str = "E, sigma and gamma random";
+pub(crate) const ALBEDO_OF_SHAPE: &str = "E, sigma random, one shape";
 pub(crate) const LOOKUP: &str = "E of GGX, 32 x 32 bilinear lookup";
+
+/// Of the errors of E, whose model is a quadrature, one hit in this many.
+const EVERY: usize = 32;
 
 /// Stands for a γ that varies from hit to hit.
 const VARIES: f64 = f64::NAN;
@@ -100,7 +104,7 @@ impl<'a> PerHit<'a> {
         let hits = || self.on.hits(0..self.on.len());
         let truth = |hit: &Hit| error::material(hit.sigma.into(), hit.gamma.into());
         match &self.what {
-            What::Normal(_, Check::Distribution) | What::Albedo(_) | What::Conductor(_) => None,
+            What::Normal(_, Check::Distribution) | What::Conductor(_) => None,
             What::Normal(each, check) => {
                 let one =
                     |(hit, m): (Hit, Vec3)| error::cdf_error(&truth(&hit), *check, hit.v, hit.u, m);
@@ -113,6 +117,10 @@ impl<'a> PerHit<'a> {
             What::D(each) => {
                 let one = |(hit, d)| error::d_error(&truth(&hit), hit.m, d);
                 Some(Error::of(hits().zip(self.all(each)).filter_map(one)))
+            }
+            What::Albedo(each) => {
+                let some = hits().zip(self.all(each)).step_by(EVERY);
+                Some(Error::of(some.map(|(hit, e)| error::e_error(&truth(&hit), hit.v, e))))
             }
         }
     }
@@ -214,7 +222,7 @@ fn values<'a>(slices: &'a Slices, on: &'a Surfaces<'a>) -> Vec<Rival<PerHit<'a>>
         // No table of its shape.
         form("D, sigma and gamma random", VARIES, whole, d_at_hit),
         form("D of GGX, sigma per hit", 2.0, ggx, d_of_ggx),
-        Rival { bytes: touched, ..form("E, sigma random, one shape", GAMMA, of_sigma, e_of_sigma) },
+        Rival { bytes: touched, ..form(ALBEDO_OF_SHAPE, GAMMA, of_sigma, e_of_sigma) },
         Rival { bytes: volume.bytes(), ..form(ALBEDO, VARIES, whole, e_at_hit) },
         Rival { bytes, stored: bytes, ..form(LOOKUP, 2.0, ggx, e_of_ggx) },
     ]

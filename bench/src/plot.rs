@@ -2,22 +2,30 @@
 
 use microfacet_report::plot::{Axis, Curve, Dash, Figure, Key, Mark, Panel};
 
+use crate::per_hit::{ALBEDO, ALBEDO_OF_SHAPE, LOOKUP};
 use crate::rows::{Quantity, Row};
 use crate::settings::GAMMA;
 
 /// Error at which rivals without one, exact in distribution, are drawn.
 const EXACT: f64 = 1e-8;
 
-/// Panels of visible normals, of G1 and of D. Filled points are Student-t with γ = [`GAMMA`],
+/// Panels of visible normals, of G1, of D, and of E at every hit. Filled points are Student-t with γ = [`GAMMA`],
 /// and the front is theirs; rings are other distributions.
 pub(crate) fn svg(rows: &[Row]) -> String {
     let of = |quantity| rows.iter().filter(|row| row.quantity == quantity).collect::<Vec<_>>();
+    let albedos: Vec<&Row> =
+        rows.iter().filter(|row| row.quantity == Quantity::PerHit && is_albedo(row)).collect();
     let panels = vec![
         panel("Visible normals", "error of the CDFs, max", &of(Quantity::Normal)),
         panel("G1", "error of G1, max", &of(Quantity::G1)),
         panel("D", "relative error of D, max", &of(Quantity::D)),
+        panel("E at every hit", "error of E, max", &albedos),
     ];
     Figure { panels, columns: 1, panel: [760.0, 470.0] }.drawing().svg()
+}
+
+fn is_albedo(row: &Row) -> bool {
+    [ALBEDO, ALBEDO_OF_SHAPE, LOOKUP].contains(&row.name)
 }
 
 /// Where a row is drawn: time and error. `None` for a sampler that draws anything but all visible
@@ -53,7 +61,7 @@ fn panel(title: &str, y_label: &str, rows: &[&Row]) -> Panel {
 }
 
 fn mark(row: &Row, at: (f64, f64)) -> Mark {
-    let ours = row.name.starts_with("table");
+    let ours = row.name.starts_with("table") || is_albedo(row) && row.name != LOOKUP;
     let exact = if row.error_max.is_some() { "" } else { " (exact)" };
     Mark {
         key: if ours { Key::TABLE } else { Key::OTHER },

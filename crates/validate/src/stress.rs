@@ -24,6 +24,8 @@ use microfacet_sampler::{MaterialError, Tables};
 use super::configuration::shapes;
 use super::run::on_threads;
 
+use per_hit::Families;
+
 use corners::{corner_materials, corner_points, random_material, random_points};
 
 /// Points drawn for each random material.
@@ -194,8 +196,7 @@ pub fn run(
     stage: &Stage,
 ) -> Result<Report, MaterialError> {
     let corners = corner_materials(tables);
-    // A set of single shapes has none.
-    let family = tables.family().ok();
+    let families = Families::of(tables);
     stage.split(usize::try_from(points.max(corner_count(&corners))).unwrap_or(usize::MAX));
     let corners = corners
         .par_iter()
@@ -204,7 +205,7 @@ pub fn run(
             let mut report = Report::default();
             let points = corner_points(sigma, gamma, i);
             let count = points.iter().map(Vec::len).sum();
-            checks::check(tables, family.as_ref(), sigma, gamma, points, &mut report)?;
+            checks::check(tables, &families, sigma, gamma, points, &mut report)?;
             stage.steps(count);
             Ok::<_, MaterialError>(report)
         })
@@ -224,7 +225,7 @@ pub fn run(
                 let mut numbers = corners::numbers(seed, i);
                 let (sigma, gamma) = random_material(tables, &shapes, &mut numbers);
                 let points = random_points(sigma, gamma, POINTS_PER_MATERIAL, &mut numbers);
-                checks::check(tables, family.as_ref(), sigma, gamma, points, &mut report)?;
+                checks::check(tables, &families, sigma, gamma, points, &mut report)?;
                 stage.steps(POINTS_PER_MATERIAL as usize);
                 Ok(report)
             },

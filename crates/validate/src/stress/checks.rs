@@ -5,11 +5,11 @@ use glam::{DVec3, Vec3};
 use microfacet_model::MicrofacetDistribution as _;
 use microfacet_model::{self as model, SignedSlope, VisibleSlope};
 use microfacet_sampler::lobe::{Batch, Reflecting, Tabulated};
-use microfacet_sampler::{Family, Ggx, Lobe, Masking, MaterialError, Skew, StudentT, Tables};
+use microfacet_sampler::{Ggx, Lobe, Masking, MaterialError, Skew, StudentT, Tables};
 use microfacet_tables::axis::half_tangent::half_tangent;
 
 use super::bsdfs::Bsdfs;
-use super::per_hit::per_hit;
+use super::per_hit::{Families, per_hit};
 use super::{Point, Region, Report, direction};
 
 /// Four ulp of a unit vector's components.
@@ -47,7 +47,7 @@ pub(super) struct Checker<'a, L> {
 /// GGX also by its closed forms.
 pub(super) fn check(
     tables: &Tables,
-    family: Option<&Family>,
+    families: &Families,
     sigma: [f32; 2],
     gamma: f64,
     views: Vec<Vec<Point>>,
@@ -66,7 +66,7 @@ pub(super) fn check(
     // A table whose heavy part is peeled holds less than all normals at grazing.
     let rises = tabulated.tabulated_share(Vec3::X) == 1.0;
     let shape = tables.student_t(1.0, gamma)?;
-    per_hit(family, &shape, sigma, gamma, rises, &views, report)?;
+    per_hit(families, &shape, sigma, gamma, rises, &views, report)?;
     let bounded = shape.bounded();
     let lobe = Lobe::from(tabulated.clone());
     let mut checker = Checker::new(lobe, BOUND, sigma, gamma, rises, report)?;

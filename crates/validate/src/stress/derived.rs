@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use microfacet_sampler::albedo::Albedo;
+use microfacet_sampler::albedo::{Albedo, AlbedoAt};
 use microfacet_sampler::lobe::{Batch, BoundedRef, Reflecting, Tabulated};
 use microfacet_sampler::{Ellipsoid, Masking, MicrofacetDistribution, Skew};
 
@@ -68,23 +68,33 @@ impl<L: Reflecting + Tabulated + Batch> Checker<'_, L> {
             }
         }
     }
-
-    /// Tests albedo and compensation at a view; the random number `u[1]` determines the light.
-    pub(super) fn albedo(&mut self, albedo: &Albedo, at: &Point) {
-        let v = at.view();
-        self.share(albedo.albedo(v), "albedo outside [0, 1]", at);
-        self.share(albedo.albedo_average(), "albedo_average outside [0, 1]", at);
-        let l = direction(1.6 * f64::from(at.u[1]), at.phi + 1.0);
-        let lobe = albedo.compensation(v, l);
-        self.density(lobe, "compensation negative, NaN or inf", at);
-        let swapped = albedo.compensation(l, v);
-        self.require(lobe == swapped, "compensation not symmetric", lobe - swapped, at);
-        let factor = f64::from(albedo.turquin(v, at.u[0]));
-        let sound = (1.0..=1.1e6).contains(&factor);
-        self.require(sound, "turquin factor outside [1, 1e6]", factor, at);
-        self.share(albedo.multiple_bounces(at.u[0]), "multiple_bounces outside [0, 1]", at);
-        let l = Vec3::from(albedo.sample_compensation(at.u));
-        self.unit(l.as_dvec3(), ULP4, "compensation light not of unit length", at);
-        self.require(l.z >= 0.0, "compensation light below the horizon", l.z, at);
-    }
 }
+
+/// The rules of an albedo, alike for each of its forms.
+macro_rules! albedos {
+    ($($name:ident: $albedo:ty),*) => {
+        impl<L: Reflecting + Tabulated + Batch> Checker<'_, L> {$(
+            /// Tests albedo and compensation at a view; the random number `u[1]` determines the
+            /// light.
+            pub(super) fn $name(&mut self, albedo: &$albedo, at: &Point) {
+                let v = at.view();
+                self.share(albedo.albedo(v), "albedo outside [0, 1]", at);
+                self.share(albedo.albedo_average(), "albedo_average outside [0, 1]", at);
+                let l = direction(1.6 * f64::from(at.u[1]), at.phi + 1.0);
+                let lobe = albedo.compensation(v, l);
+                self.density(lobe, "compensation negative, NaN or inf", at);
+                let swapped = albedo.compensation(l, v);
+                self.require(lobe == swapped, "compensation not symmetric", lobe - swapped, at);
+                let factor = f64::from(albedo.turquin(v, at.u[0]));
+                let sound = (1.0..=1.1e6).contains(&factor);
+                self.require(sound, "turquin factor outside [1, 1e6]", factor, at);
+                self.share(albedo.multiple_bounces(at.u[0]), "multiple_bounces outside [0, 1]", at);
+                let l = Vec3::from(albedo.sample_compensation(at.u));
+                self.unit(l.as_dvec3(), ULP4, "compensation light not of unit length", at);
+                self.require(l.z >= 0.0, "compensation light below the horizon", l.z, at);
+            }
+        )*}
+    };
+}
+
+albedos!(albedo: Albedo, albedo_at_hit: AlbedoAt<'_>);
