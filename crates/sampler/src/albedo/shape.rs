@@ -154,7 +154,8 @@ impl<'a> ShapeAlbedo<'a> {
         };
         let scale = if is_mirror { 0.0 } else { 1.0 };
         let ([a, b, c, d], [.., e, f]) = ((low * scale).to_array(), (high * scale).to_array());
-        let weights = [[a, b], [c, d], [e, f]].map(|pair| pair.map(f32x4::splat));
+        let splat = f32x4::splat;
+        let weights = [[splat(a), splat(b)], [splat(c), splat(d)], [splat(e), splat(f)]];
         let (start, view) = (start as u32 * self.stride, self.fast.prepare(sigma));
         ShapeAlbedoAt { shape: self, start, weights, sigma, view }
     }
@@ -270,21 +271,16 @@ impl ShapeAlbedoAt<'_> {
     fn channel(&self, channel: usize, (first, [low, high]): (usize, SixLanes)) -> f32 {
         let values = &self.shape.channels[channel][..];
         let mut at = self.start + first as u32;
-        let mut row = |weight: f32x4| {
-            let from = at as usize;
-            let row: &[f32; SIX] = values[from..from + SIX].first_chunk().expect("six");
-            at += self.shape.stride;
-            let [first, last]: [&[f32; 4]; 2] =
-                [row.first_chunk(), row.last_chunk()].map(|four| four.expect("of six"));
-            [f32x4::from(*first) * weight, f32x4::from(*last) * weight]
-        };
         // Two sums at a time, which do not wait for each other.
-        let mut sums = self.weights[0].map(&mut row);
-        for pair in &self.weights[1..] {
+        let mut sums = [[f32x4::ZERO; 2]; 2];
+        for pair in &self.weights {
             for (sums, weight) in sums.iter_mut().zip(pair) {
-                for (sum, x) in sums.iter_mut().zip(row(*weight)) {
-                    *sum += x;
-                }
+                let from = at as usize;
+                let row: &[f32; SIX] = values[from..from + SIX].first_chunk().expect("six");
+                at += self.shape.stride;
+                let (first, last) = (row.first_chunk::<4>(), row.last_chunk::<4>());
+                sums[0] += f32x4::from(*first.expect("of six")) * *weight;
+                sums[1] += f32x4::from(*last.expect("of six")) * *weight;
             }
         }
         let [[a, b], [c, d]] = sums;

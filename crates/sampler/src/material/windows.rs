@@ -186,7 +186,9 @@ impl Planes<Node> {
     /// (value, slope) at a place and the next; `None` where there are none.
     #[inline(always)]
     pub(super) fn pair(&self, window: Window, place: usize) -> Option<f32x4> {
-        Some(combined(self.two(window, place)?.map(|nodes| window.halves(nodes))))
+        // Not by `map`, whose closure is a call of its own in some programs.
+        let [low, high] = self.two(window, place)?;
+        Some(combined([window.halves(low), window.halves(high)]))
     }
 
     /// [`pair`](Self::pair) of four places, in lanes; NaN where there are none.
@@ -199,11 +201,11 @@ impl Planes<Node> {
     /// [`pair`](Self::pair), linear in w between a place and another.
     #[inline(always)]
     pub(super) fn between(&self, window: Window, low: usize, high: usize, w: f32) -> f32x4 {
-        let (Some(low), Some(high)) = (self.two(window, low), self.two(window, high)) else {
+        let (Some([a, b]), Some([c, d])) = (self.two(window, low), self.two(window, high)) else {
             return NONE;
         };
-        let [[a, b], [c, d]] = [low, high].map(|nodes| nodes.map(|nodes| window.halves(nodes)));
-        let w = f32x4::splat(w);
+        let ([a, b], w) = ([window.halves(a), window.halves(b)], f32x4::splat(w));
+        let [c, d] = [window.halves(c), window.halves(d)];
         combined([a + w * (c - a), b + w * (d - b)])
     }
 }
@@ -213,10 +215,10 @@ impl Planes<Cell> {
     #[inline(always)]
     pub(super) fn cell(&self, window: Window, place: usize) -> Cell {
         let Some(cells) = self.at(window, place) else { return [f32::NAN; 4] };
-        let weights = window.weights.to_array();
-        let [a, b, c, d] =
-            core::array::from_fn(|i| f32x4::splat(weights[i]) * f32x4::new(cells[i]));
-        ((a + b) + (c + d)).to_array()
+        let ([a, b, c, d], [p, q, r, s]) = (window.weights.to_array(), *cells);
+        let low = f32x4::new(p) * a + f32x4::new(q) * b;
+        let high = f32x4::new(r) * c + f32x4::new(s) * d;
+        (low + high).to_array()
     }
 }
 
