@@ -9,8 +9,8 @@ use crate::settings::GAMMA;
 /// Error at which rivals without one, exact in distribution, are drawn.
 const EXACT: f64 = 1e-8;
 
-/// Panels of visible normals, of G1, of D, and of E at every hit. Filled points are Student-t with γ = [`GAMMA`],
-/// and the front is theirs; rings are other distributions.
+/// Panels of visible normals, of G1, of D, and of E at every hit. Filled points are Student-t with
+/// γ = [`GAMMA`], and the front is theirs; rings are other distributions.
 pub(crate) fn svg(rows: &[Row]) -> String {
     let of = |quantity| rows.iter().filter(|row| row.quantity == quantity).collect::<Vec<_>>();
     let albedos: Vec<&Row> =

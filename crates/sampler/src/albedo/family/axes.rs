@@ -107,7 +107,7 @@ impl Axes {
     /// The place of a clamped σ and d.
     #[inline(always)]
     pub(super) fn place(&self, sigma: f32, d: f32) -> Place {
-        // Below 0 and above the last node by rounding at most, of which the nearest node is that one.
+        // Beyond the first and the last node by rounding at most: the nearest node is that one.
         quadratic_weights((Self::coordinates(sigma, d) - self.first) * self.density)
     }
 

@@ -54,7 +54,8 @@ impl FamilyAlbedo {
         Some(family)
     }
 
-    /// The averages over views of the lookups at σ and d = 2γ−3: log₂(1 − E_avg) and the other channels.
+    /// The averages over views of the lookups at σ and d = 2γ−3: log₂(1 − E_avg), and of the other
+    /// channels.
     fn integrated(&self, sigma: f32, d: f32) -> [f64; 3] {
         const RULE: [(f64, f64); 2] = gauss_legendre();
         let place = self.place(sigma, d);
