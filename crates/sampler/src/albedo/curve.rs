@@ -8,7 +8,7 @@ use microfacet_core::Masking;
 use microfacet_core::math::unit;
 use microfacet_tables::axis::lagrange::{SIX, combine};
 use microfacet_tables::axis::{PreparedAzimuth, PreparedCritical, PreparedView, ViewBlend};
-use microfacet_tables::{Interval, Kind, Mapping, Reflectance, Table, Weights};
+use microfacet_tables::{Axis, Interval, Kind, Mapping, Reflectance, Table, Weights};
 
 use super::average::{At, add, over_views};
 use super::elevation::Elevation;
@@ -60,10 +60,7 @@ impl MaterialWeights {
                     collapsed.sigma = sigma.max(first);
                     collapsed.sigma
                 }
-                Mapping::ReflectanceRoot => {
-                    let [first, last] = axis.ends().map(|t| axis.quantity(t));
-                    end(point.eta, [first?, last?])
-                }
+                Mapping::ReflectanceRoot => index(axis, point)?,
                 _ => break,
             };
             collapsed.weights.push(axis.weights(axis.coordinate(quantity)?)?);
@@ -79,16 +76,18 @@ impl MaterialWeights {
             weights.push(match axis.mapping {
                 Mapping::LogShape(_) => alloc::vec![(shape, 1.0)],
                 Mapping::LogRoughness(_) => alloc::vec![(sigma, 1.0)],
-                Mapping::ReflectanceRoot => {
-                    let [first, last] = axis.ends().map(|t| axis.quantity(t));
-                    let eta = end(point.eta, [first?, last?]);
-                    axis.weights(axis.coordinate(eta)?)?
-                }
+                Mapping::ReflectanceRoot => axis.weights(axis.coordinate(index(axis, point)?)?)?,
                 _ => break,
             });
         }
         Some(Self { weights, sigma: point.sigma, is_mirror: false })
     }
+}
+
+/// The index of refraction on its axis.
+fn index(axis: &Axis, point: &MaterialPoint) -> Option<f64> {
+    let [first, last] = axis.ends().map(|t| axis.quantity(t));
+    Some(end(point.eta, [first?, last?]))
 }
 
 /// `x`, or an end of a range that equals it in single precision, in which lobes take σ.

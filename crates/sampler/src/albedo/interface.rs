@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 
 use microfacet_core::Masking;
 use microfacet_core::math::unit;
-use microfacet_tables::axis::lagrange::{SIX, six, weights};
+use microfacet_tables::axis::lagrange::{SIX, few, six};
 use microfacet_tables::axis::{
     CriticalBlend, LogRoughness, LogShape, PreparedCritical, PreparedView, ViewBlend,
 };
@@ -116,11 +116,7 @@ impl<M: Copy> Nodes<M> {
         if self.len() >= SIX {
             return (x, six(((t - first) / (last - first)) as f32, self.len()));
         }
-        let mut all = [0.0; SIX];
-        for (i, weight) in weights(&self.at, t, SIX) {
-            all[i] = weight as f32;
-        }
-        (x, (0, all))
+        (x, (0, few(&self.at, t)))
     }
 }
 

@@ -105,7 +105,7 @@ pub(super) struct Shares {
 }
 
 impl Shares {
-    fn of([reflection, transmission]: [f32; 2]) -> Self {
+    pub(super) fn of([reflection, transmission]: [f32; 2]) -> Self {
         // Interpolation may make the sum exceed 1 by the tables' error.
         Self { reflection, transmission, lost: (1.0 - reflection - transmission).max(0.0) }
     }

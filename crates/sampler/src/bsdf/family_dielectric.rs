@@ -9,7 +9,7 @@ use wide::f32x4;
 
 use super::broad::Broad;
 use super::compensation::Compensation;
-use super::energy::{Averages, Energy, InterfaceAlbedo, Totals, averages, smooth_shares};
+use super::energy::{Averages, Energy, InterfaceAlbedo, Shares, Totals, averages, smooth_shares};
 use super::interface::checked;
 use crate::albedo::{InterfaceAlbedos, InterfaceAt};
 use crate::bind_error::BindError;
@@ -61,7 +61,7 @@ impl Tables {
     /// masking = "height-correlated"
     /// ```
     ///
-    /// The call takes some tens of milliseconds for such a set; keep the result.
+    /// The call reads every node of these tables; keep the result.
     ///
     /// # Errors
     /// [`BindError::Index`] unless η lies in [1e-3, 1e3];
@@ -83,13 +83,7 @@ impl Tables {
             nodes[0].push(outside);
             nodes[1].push(inside);
             let sides = [&albedo.outside, &albedo.inside];
-            broad.push(sides.map(|curve| {
-                let lost = |v: Vec3| {
-                    let [reflected, transmitted] = curve.eval(v);
-                    (1.0 - reflected - transmitted).max(0.0)
-                };
-                Broad::round(lost)
-            }));
+            broad.push(sides.map(|curve| Broad::round(|v| Shares::of(curve.eval(v)).lost)));
         })?;
         Ok(FamilyDielectric {
             albedos,

@@ -78,6 +78,17 @@ pub(super) fn six_weights(x: f32) -> [f32; SIX] {
     weights
 }
 
+/// [`weights`] of fewer than six nodes in single precision, of the first on; 0 for those that there
+/// are not.
+#[must_use]
+pub fn few(nodes: &[f64], t: f64) -> [f32; SIX] {
+    let mut all = [0.0; SIX];
+    for (i, weight) in weights(nodes, t, SIX) {
+        all[i] = weight as f32;
+    }
+    all
+}
+
 /// The place between the first and the last of six nodes.
 pub const MIDDLE: f32 = 2.5;
 

@@ -54,18 +54,14 @@ impl Axes {
         let [first, end] = [0, 1].map(|end| Self::coordinates(sigmas[end], shapes[end]));
         let widths = (end - first).to_array();
         // All nodes at one place where the ends are the same.
-        let density = |width: f32, cells: usize| match width {
-            width if width > 1e-6 => cells as f32 / width,
-            _ => 0.0,
+        let density =
+            |width: f32, cells: usize| if width > 1e-6 { cells as f32 / width } else { 0.0 };
+        let cells = |width: f32, step: f32| match width > 1e-6 {
+            true => libm::ceilf(width / step).max(2.0) as usize,
+            false => 0,
         };
-        let cells = |width: f32, step: f32| match width {
-            width if width > 1e-6 => libm::ceilf(width / step).max(2.0) as usize,
-            _ => 0,
-        };
-        let [start, width] = {
-            let [start, end] = sigmas.map(Self::of_average);
-            [start, end - start]
-        };
+        let [start, end] = sigmas.map(Self::of_average);
+        let width = end - start;
         let averages = cells(width, Self::AVERAGE_STEP);
         let cells = cells(widths[SIGMA], Self::STEP);
         let densities =
