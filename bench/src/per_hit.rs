@@ -5,7 +5,7 @@ use std::hint::black_box;
 use std::ops::Range;
 
 use glam::Vec3;
-use microfacet_sampler::albedo::AlbedoAt;
+use microfacet_sampler::albedo::{AlbedoAt, ShapeAlbedo};
 use microfacet_sampler::lobe::Reflecting;
 use microfacet_sampler::{Conductor, ConductorFresnel, Ggx, Masking, MicrofacetDistribution as _};
 
@@ -19,7 +19,7 @@ use crate::rival::{Rival, lobe};
 use crate::rivals::conductor::GgxConductor;
 use crate::rivals::lookup::Lookup;
 use crate::sampler::{Check, closed};
-use crate::settings::{GAMMA, Settings};
+use crate::settings::{GAMMA, SIGMA, Settings};
 use crate::tables::Slices;
 use crate::textures::{Hit, Surface, Texture};
 
@@ -31,6 +31,7 @@ pub(crate) const RANDOM: &str = "sample, sigma and gamma random";
 pub(crate) const PEELED: &str = "sample, sigma random, gamma random < 1.8";
 const OF_GGX: &str = "sample of GGX, sigma per hit";
 pub(crate) const ALBEDO: &str = "E, sigma and gamma random";
+pub(crate) const BOUND_ALBEDO: &str = "E, one sigma, one shape";
 pub(crate) const ALBEDO_OF_SHAPE: &str = "E, sigma random, one shape";
 pub(crate) const LOOKUP: &str = "E of GGX, 32 x 32 bilinear lookup";
 
@@ -58,7 +59,7 @@ pub(crate) struct PerHit<'a> {
     what: What<'a>,
 }
 
-/// One surface for each kind of textures.
+/// One surface for each kind of textures, and the albedo of one shape.
 pub(crate) struct Surfaces<'a> {
     constant: Surface<'a>,
     of_sigma: Surface<'a>,
@@ -66,11 +67,12 @@ pub(crate) struct Surfaces<'a> {
     smooth: Surface<'a>,
     whole: Surface<'a>,
     peeled: Surface<'a>,
+    shape: ShapeAlbedo<'a>,
 }
 
 impl<'a> Surfaces<'a> {
     pub(crate) fn new(
-        slices: &Slices,
+        slices: &'a Slices,
         inputs: &'a Inputs,
         lights: &'a Inputs,
         settings: &Settings,
@@ -84,6 +86,8 @@ impl<'a> Surfaces<'a> {
             smooth: on(Texture::smooth(calls)),
             whole: on(Texture::whole(seed, calls)),
             peeled: on(Texture::peeled(seed, calls)),
+            shape: (slices.whole().shape_albedo(GAMMA, Masking::HeightCorrelated))
+                .expect("it has every shape"),
         }
     }
 }
@@ -167,7 +171,7 @@ fn form<'a>(
 }
 
 fn samples<'a>(slices: &'a Slices, on: &'a Surfaces<'a>) -> Vec<Rival<PerHit<'a>>> {
-    let Surfaces { constant, of_sigma, ggx, smooth, whole, peeled } = on;
+    let Surfaces { constant, of_sigma, ggx, smooth, whole, peeled, .. } = on;
     let (set, family) = (slices.whole(), slices.family());
     let [bound, shape] = [(); 2].map(|()| lobe(set, GAMMA));
     let bound = each(constant, move |hit| bound.sample_visible_normal(hit.v, hit.u).into());
@@ -194,7 +198,7 @@ fn samples<'a>(slices: &'a Slices, on: &'a Surfaces<'a>) -> Vec<Rival<PerHit<'a>
 
 /// G1, D and E.
 fn values<'a>(slices: &'a Slices, on: &'a Surfaces<'a>) -> Vec<Rival<PerHit<'a>>> {
-    let Surfaces { constant, of_sigma, ggx, whole, .. } = on;
+    let Surfaces { constant, of_sigma, ggx, whole, shape, .. } = on;
     let (set, family) = (slices.whole(), slices.family());
     let [a, b, c] = [(); 3].map(|()| lobe(set, GAMMA));
     let lookup = Lookup::new(set);
@@ -207,10 +211,11 @@ fn values<'a>(slices: &'a Slices, on: &'a Surfaces<'a>) -> Vec<Rival<PerHit<'a>>
     let d_at_hit = What::D(each(whole, |hit| family.at(hit.sigma, hit.gamma).d(hit.m)));
     let d_of_ggx = What::D(each(ggx, |hit| of_ggx(hit).d(hit.m)));
     let volume = slices.albedo();
-    let of_shape = set.shape_albedo(GAMMA, Masking::HeightCorrelated).expect("it has every shape");
     // Of E alone.
-    let touched = size_of_val(&of_shape.channels[0][..]);
-    let e_of_sigma = What::Albedo(each(of_sigma, move |hit| of_shape.at(hit.sigma).albedo(hit.v)));
+    let touched = size_of_val(&shape.channels[0][..]);
+    let prepared = shape.at(SIGMA as f32);
+    let e = What::Albedo(each(constant, move |hit| prepared.albedo(hit.v)));
+    let e_of_sigma = What::Albedo(each(of_sigma, |hit| shape.at(hit.sigma).albedo(hit.v)));
     let e_at_hit = What::Albedo(each(whole, |hit| volume.at(hit.sigma, hit.gamma).albedo(hit.v)));
     let e_of_ggx = What::Albedo(each(ggx, move |hit| lookup.at(hit.sigma, hit.v.z)));
     vec![
@@ -222,6 +227,7 @@ fn values<'a>(slices: &'a Slices, on: &'a Surfaces<'a>) -> Vec<Rival<PerHit<'a>>
         // No table of its shape.
         form("D, sigma and gamma random", VARIES, whole, d_at_hit),
         form("D of GGX, sigma per hit", 2.0, ggx, d_of_ggx),
+        Rival { bytes: touched, ..form(BOUND_ALBEDO, GAMMA, constant, e) },
         Rival { bytes: touched, ..form(ALBEDO_OF_SHAPE, GAMMA, of_sigma, e_of_sigma) },
         Rival { bytes: volume.bytes(), ..form(ALBEDO, VARIES, whole, e_at_hit) },
         Rival { bytes, stored: bytes, ..form(LOOKUP, 2.0, ggx, e_of_ggx) },

@@ -2,7 +2,7 @@
 
 use microfacet_report::plot::{Axis, Curve, Dash, Figure, Key, Mark, Panel};
 
-use crate::per_hit::{ALBEDO, ALBEDO_OF_SHAPE, LOOKUP};
+use crate::per_hit::{ALBEDO, ALBEDO_OF_SHAPE, BOUND_ALBEDO, LOOKUP};
 use crate::rows::{Quantity, Row};
 use crate::settings::GAMMA;
 
@@ -25,7 +25,7 @@ pub(crate) fn svg(rows: &[Row]) -> String {
 }
 
 fn is_albedo(row: &Row) -> bool {
-    [ALBEDO, ALBEDO_OF_SHAPE, LOOKUP].contains(&row.name)
+    [BOUND_ALBEDO, ALBEDO_OF_SHAPE, ALBEDO, LOOKUP].contains(&row.name)
 }
 
 /// Where a row is drawn: time and error. `None` for a sampler that draws anything but all visible
