@@ -1,3 +1,4 @@
+
 /* ---- Albedos --------------------------------------------------------------------------------- */
 
 /* Weights of the polynomial through six of n even nodes about x; returns the first of them. */
@@ -26,28 +27,29 @@ STUDENT_T_FUNCTION int student_t_impl_six(float x, int n, float weights[6])
 /* One roughness of a table of albedos. */
 typedef struct student_t_impl_albedo {
     const student_t_albedo_table *table;
+    enum student_t_masking masking;
     float sigma, coordinate; /* sigma = 0: a mirror; coordinate in [0, 1] */
     float floor;             /* cosine of the first view */
     int start;               /* of the six nodes along sigma */
     float weights[6];
 } student_t_impl_albedo;
 
-STUDENT_T_FUNCTION student_t_impl_albedo student_t_impl_albedo_of(const student_t_shape *shape,
-                                                                  const float sigma[2],
-                                                                  enum student_t_masking masking)
+STUDENT_T_FUNCTION student_t_impl_albedo
+student_t_impl_albedo_of(const student_t_lobe *lobe, enum student_t_masking masking)
 {
     student_t_impl_albedo a;
-    const student_t_albedo_table *t = &shape->albedo[masking == STUDENT_T_UNCORRELATED ? 0 : 1];
-    const float stand_in =
-        sqrtf(student_t_impl_sigma(sigma[0]) * student_t_impl_sigma(sigma[1]));
+    const student_t_albedo_table *t =
+        &lobe->shape->albedo[masking == STUDENT_T_UNCORRELATED ? 0 : 1];
+    const float stand_in = sqrtf(lobe->sigma_x * lobe->sigma_y);
     a.table = t;
+    a.masking = masking;
     a.sigma = student_t_impl_min(student_t_impl_max(stand_in, t->sigma_min), t->sigma_max);
     a.floor = t->floor * (t->slope * a.sigma) / (t->floor + t->slope * a.sigma);
     a.coordinate = log1pf(a.sigma / t->offset) + t->slow * logf(a.sigma / t->first) +
                    t->linear * a.sigma;
     a.coordinate = (a.coordinate - t->start) / t->range;
     a.start = student_t_impl_six(a.coordinate * (float)(t->sigmas - 1), t->sigmas, a.weights);
-    if (!(sigma[0] > 0.0f && sigma[1] > 0.0f)) a.sigma = 0.0f;
+    if (lobe->is_mirror) a.sigma = 0.0f;
     return a;
 }
 
@@ -100,7 +102,7 @@ STUDENT_T_FUNCTION void student_t_impl_moments_at(const student_t_impl_albedo *a
 
 /* E - 1, bias and F82 at any cosine, to the limits that they near with a power of it. */
 STUDENT_T_FUNCTION void student_t_impl_moments(const student_t_impl_albedo *a, float cos_theta,
-                                               enum student_t_masking masking, float moments[3])
+                                               float moments[3])
 {
     const float mu = student_t_impl_unit(cos_theta);
     moments[0] = 0.0f;
@@ -113,7 +115,7 @@ STUDENT_T_FUNCTION void student_t_impl_moments(const student_t_impl_albedo *a, f
         float above[3], power = 1.0f, more = 0.0f;
         int i;
         student_t_impl_moments_at(a, 4.0f * a->floor, above);
-        if (masking != STUDENT_T_UNCORRELATED) {
+        if (a->masking != STUDENT_T_UNCORRELATED) {
             const float ratio = above[0] / moments[0];
             power = ratio > 1.0f ? student_t_impl_min(0.5f * log2f(ratio), 1.0f) : 0.0f;
         }
@@ -127,11 +129,10 @@ STUDENT_T_FUNCTION void student_t_impl_moments(const student_t_impl_albedo *a, f
 }
 
 /* The share of light lost, 1 - E, with its digits where E is close to 1. */
-STUDENT_T_FUNCTION float student_t_impl_lost(const student_t_impl_albedo *a, float cos_theta,
-                                             enum student_t_masking masking)
+STUDENT_T_FUNCTION float student_t_impl_lost(const student_t_impl_albedo *a, float cos_theta)
 {
     float moments[3];
-    student_t_impl_moments(a, cos_theta, masking, moments);
+    student_t_impl_moments(a, cos_theta, moments);
     return -moments[0];
 }
 
@@ -174,42 +175,40 @@ STUDENT_T_FUNCTION void student_t_impl_limit(float e, float bias, float f82, flo
 
 /* Directional albedo E of one bounce with F = 1, in [0, 1], for a view or light of this cosine, of
  * the round lobe of sqrt(sigma_x sigma_y). */
-STUDENT_T_FUNCTION float student_t_albedo(const student_t_shape *shape, const float sigma[2],
+STUDENT_T_FUNCTION float student_t_lobe_albedo(const student_t_lobe *lobe,
                                           float cos_theta, enum student_t_masking masking)
 {
-    const student_t_impl_albedo a = student_t_impl_albedo_of(shape, sigma, masking);
-    return 1.0f - student_t_impl_lost(&a, cos_theta, masking);
+    const student_t_impl_albedo a = student_t_impl_albedo_of(lobe, masking);
+    return 1.0f - student_t_impl_lost(&a, cos_theta);
 }
 
 /* Its parts: Schlick's reflectance F0 + (F90 - F0)(1 - v.m)^5 has the albedo F0 scale + F90 bias,
  * with scale + bias = E. F82 is the moment of (v.m)(1 - v.m)^6 over its peak, at v.m = 1/7: a metal
  * of OpenPBR, whose tint lowers the reflectance there by b, has b F82 less. */
-STUDENT_T_FUNCTION void student_t_albedo_parts(const student_t_shape *shape, const float sigma[2],
+STUDENT_T_FUNCTION void student_t_lobe_albedo_parts(const student_t_lobe *lobe,
                                                float cos_theta, enum student_t_masking masking,
                                                float scale_bias_f82[3])
 {
-    const student_t_impl_albedo a = student_t_impl_albedo_of(shape, sigma, masking);
+    const student_t_impl_albedo a = student_t_impl_albedo_of(lobe, masking);
     float moments[3];
-    student_t_impl_moments(&a, cos_theta, masking, moments);
+    student_t_impl_moments(&a, cos_theta, moments);
     student_t_impl_limit(1.0f + moments[0], moments[1], moments[2], scale_bias_f82);
 }
 
 /* The average of E over the hemisphere of views, weighted by the cosine. */
-STUDENT_T_FUNCTION float student_t_albedo_average(const student_t_shape *shape,
-                                                  const float sigma[2],
+STUDENT_T_FUNCTION float student_t_lobe_albedo_average(const student_t_lobe *lobe,
                                                   enum student_t_masking masking)
 {
-    const student_t_impl_albedo a = student_t_impl_albedo_of(shape, sigma, masking);
+    const student_t_impl_albedo a = student_t_impl_albedo_of(lobe, masking);
     return 1.0f - student_t_impl_lost_average(&a);
 }
 
 /* The averages of the parts. */
-STUDENT_T_FUNCTION void student_t_albedo_average_parts(const student_t_shape *shape,
-                                                       const float sigma[2],
+STUDENT_T_FUNCTION void student_t_lobe_albedo_average_parts(const student_t_lobe *lobe,
                                                        enum student_t_masking masking,
                                                        float scale_bias_f82[3])
 {
-    const student_t_impl_albedo a = student_t_impl_albedo_of(shape, sigma, masking);
+    const student_t_impl_albedo a = student_t_impl_albedo_of(lobe, masking);
     float averages[3];
     student_t_impl_averages(&a, averages);
     student_t_impl_limit(1.0f - student_t_impl_min(expf(averages[0]), 1.0f), averages[1],
@@ -221,16 +220,15 @@ STUDENT_T_FUNCTION void student_t_albedo_average_parts(const student_t_shape *sh
  * multiply it by F_avg^2 E_avg/(1 - F_avg (1 - E_avg)), with F_avg its average reflectance, which
  * is (20 F0 + F90)/21 for Schlick's. Drawing lights by the cosine suits it for sigma >= 0.3; smooth
  * surfaces lose their light at grazing, where such samples have weights of the order of 1/sigma. */
-STUDENT_T_FUNCTION float student_t_compensation(const student_t_shape *shape, const float sigma[2],
+STUDENT_T_FUNCTION float student_t_lobe_compensation(const student_t_lobe *lobe,
                                                 const float v[3], const float l[3],
                                                 enum student_t_masking masking)
 {
     if (!(v[2] > 0.0f && l[2] > 0.0f)) return 0.0f;
     {
-        const student_t_impl_albedo a = student_t_impl_albedo_of(shape, sigma, masking);
+        const student_t_impl_albedo a = student_t_impl_albedo_of(lobe, masking);
         const float average = student_t_impl_lost_average(&a);
-        const float both = student_t_impl_lost(&a, v[2], masking) *
-                           student_t_impl_lost(&a, l[2], masking);
+        const float both = student_t_impl_lost(&a, v[2]) * student_t_impl_lost(&a, l[2]);
         /* What loses nothing gets nothing back. */
         return average > STUDENT_T_SMALLEST ? 0.318309886f * both / average : 0.0f;
     }

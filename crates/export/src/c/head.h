@@ -78,7 +78,7 @@
 #define STUDENT_T_H
 
 /* Raised whenever the layout of student_t_shape changes: the files of shapes ask for theirs. */
-#define STUDENT_T_LAYOUT 2
+#define STUDENT_T_LAYOUT 3
 
 #if !defined(__CUDACC_RTC__) && !defined(__HIPCC_RTC__)
 #include <math.h>
@@ -128,16 +128,14 @@ typedef struct student_t_albedo_table {
     float weight, normal, share, kappa, spread, floor, slope;
 } student_t_albedo_table;
 
-/* One shape gamma. Tables are even in the coordinate of their views or random numbers, and have a
- * cell more than that reaches: the place of the end itself. */
-typedef struct student_t_shape {
+/* The numbers that lookups of one gamma read. */
+typedef struct student_t_constants {
     int is_ggx;            /* gamma = 2: closed forms, and no tables but those of albedos */
     float s;               /* 1/(gamma - 1), 0 for gamma = infinity */
     float d_s, d_power;    /* s and 1 - gamma/2 of D, where s is never 0 */
     float kappa;           /* of the coordinate of masking, z/(z + kappa rho) */
     int masking_crowded;   /* whether that is 1 - sqrt(1 - it) */
     float masking_cells;
-    const float *masking;  /* [cells + 1][4]: cubics, of G1/coordinate/cells */
     float rows;            /* cells along the view, where the largest of three linear functions */
     float rows_first;      /* of r = 1 - z/(rho + length) is the place: rows_first (1 - r), */
     float rows_second;     /* rows_second_end - rows_second r, and rows - rows_third r */
@@ -145,15 +143,33 @@ typedef struct student_t_shape {
     float rows_third;
     int numbers;           /* nodes of half a row */
     float along_scale;     /* 2^(1/4) (numbers - 1) */
-    const float *slopes;   /* [rows + 2][2][numbers][2], and a node: value and slope, the half for
-                            * u <= 1/2 first */
     float across_scale;    /* 2^(1/4) cells */
-    const float *across;   /* [cells + 1][4]: cubics */
-    float heavy_per_row;   /* cells in a row of slopes */
-    const float *heavy;    /* [cells + 1][4]: cubics, of the share of visible normals that is in no
-                            * table; none for gamma >= 1.8 */
+    float heavy_per_row;   /* cells of heavy shares in a row of slopes; 0 without such shares */
     float heavy_exponent;  /* 1/(2 gamma - 3) */
     float heavy_root_s;    /* sqrt(s) */
+} student_t_constants;
+
+/* One shape gamma. Tables are even in the coordinate of their views or random numbers, and have a
+ * cell more than that reaches: the place of the end itself. */
+typedef struct student_t_shape {
+    float gamma;           /* the largest finite number for infinity, which is Beckmann */
+    student_t_constants constants;
+    const float *masking;  /* [cells + 1][4]: cubics, of G1/coordinate/cells */
+    const float *slopes;   /* [rows + 2][2][numbers][2], and a node: value and slope, the half for
+                            * u <= 1/2 first */
+    const float *across;   /* [cells + 1][4]: cubics */
+    const float *heavy;    /* [cells + 1][4]: cubics, of the share of visible normals that is in no
+                            * table; none for gamma >= 1.8 */
     student_t_albedo_table albedo[2]; /* by student_t_masking */
 } student_t_shape;
+
+/* The lobe of one gamma and roughness: what a renderer makes at a hit, and hands to the functions
+ * below. Only the first three members are for users. */
+typedef struct student_t_lobe {
+    float gamma;             /* the largest finite number for infinity */
+    float sigma_x, sigma_y;  /* in [1e-8, 1e6] */
+    int is_mirror;           /* a sigma was not above 0: its albedo is 1 */
+    student_t_constants constants;
+    const student_t_shape *shape;
+} student_t_lobe;
 

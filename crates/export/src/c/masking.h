@@ -1,43 +1,3 @@
-/* ---- Numbers ---------------------------------------------------------------------------------
- * Comparisons are written so that NaN takes the second value. */
-
-#define STUDENT_T_LARGEST 3.4028234e38f
-#define STUDENT_T_SMALLEST 1.17549435e-38f
-
-STUDENT_T_FUNCTION float student_t_impl_max(float a, float b) { return a > b ? a : b; }
-STUDENT_T_FUNCTION float student_t_impl_min(float a, float b) { return a < b ? a : b; }
-
-/* x in [0, 1], and 0 for NaN. */
-STUDENT_T_FUNCTION float student_t_impl_unit(float x)
-{
-    return student_t_impl_min(student_t_impl_max(x, 0.0f), 1.0f);
-}
-
-/* A density, which may have overflowed; NaN, of arguments that are NaN, is 0. */
-STUDENT_T_FUNCTION float student_t_impl_finite(float x)
-{
-    return student_t_impl_min(student_t_impl_max(x, 0.0f), STUDENT_T_LARGEST);
-}
-
-STUDENT_T_FUNCTION float student_t_impl_sigma(float sigma)
-{
-    return student_t_impl_min(student_t_impl_max(sigma, 1e-8f), 1e6f);
-}
-
-/* The cell of x, which is in [0, cells] to rounding, and the position in it; at the end, the cell
- * after the last. */
-STUDENT_T_FUNCTION int student_t_impl_cell(float x, float *position)
-{
-    const int cell = (int)x;
-    *position = x - (float)cell;
-    return cell;
-}
-
-/* The cubic of a cell. */
-STUDENT_T_FUNCTION float student_t_impl_cubic(const float *c, float w)
-{
-    return (c[0] + w * c[1]) + (w * w) * (c[2] + w * c[3]);
-}
 
 /* ---- Directions ------------------------------------------------------------------------------ */
 
@@ -49,11 +9,11 @@ typedef struct student_t_impl_direction {
 } student_t_impl_direction;
 
 STUDENT_T_FUNCTION student_t_impl_direction
-student_t_impl_stretch(float sigma_x, float sigma_y, const float w[3])
+student_t_impl_stretch(const student_t_lobe *lobe, const float w[3])
 {
     student_t_impl_direction d;
-    d.x = sigma_x * w[0];
-    d.y = sigma_y * w[1];
+    d.x = lobe->sigma_x * w[0];
+    d.y = lobe->sigma_y * w[1];
     d.rho2 = d.x * d.x + d.y * d.y;
     d.rho = sqrtf(d.rho2);
     d.z = student_t_impl_unit(w[2]);
@@ -75,20 +35,21 @@ student_t_impl_stretch(float sigma_x, float sigma_y, const float w[3])
 
 /* 1/(area of the microsurface seen from a direction) = G1/z, finite at grazing. */
 STUDENT_T_FUNCTION float
-student_t_impl_inverse_area(const student_t_shape *shape, student_t_impl_direction d)
+student_t_impl_inverse_area(const student_t_lobe *lobe, student_t_impl_direction d)
 {
-    if (shape->is_ggx) {
+    const student_t_constants *c = &lobe->constants;
+    if (c->is_ggx) {
         const float length = sqrtf(d.rho2 + d.z * d.z);
         return 2.0f / student_t_impl_max(d.z + length, STUDENT_T_SMALLEST);
     } else {
-        const float cells = shape->masking_cells, across = shape->kappa * d.rho;
+        const float cells = c->masking_cells, across = c->kappa * d.rho;
         const float area = student_t_impl_max(d.z + across, 1e-30f); /* less than any has */
         const float r = cells / area;
         float at = d.z * r, w;
         int cell;
-        if (shape->masking_crowded) at = (1.0f - sqrtf(student_t_impl_unit(across / area))) * cells;
+        if (c->masking_crowded) at = (1.0f - sqrtf(student_t_impl_unit(across / area))) * cells;
         cell = student_t_impl_cell(at, &w);
-        return student_t_impl_cubic(shape->masking + 4 * cell, w) * r;
+        return student_t_impl_cubic(lobe->shape->masking + 4 * cell, w) * r;
     }
 }
 
@@ -114,64 +75,132 @@ STUDENT_T_FUNCTION void student_t_impl_face(float vx, float vy, float vz, float 
 
 /* ---- Normals and masking --------------------------------------------------------------------- */
 
-/* Normal distribution function D(m): D(m) (m.n) integrates to 1 over all m. */
+/* D of a normal of any length, whose square is given. */
 STUDENT_T_FUNCTION float
-student_t_d(const student_t_shape *shape, const float sigma[2], const float m[3])
+student_t_impl_d(const student_t_lobe *lobe, const float m[3], float length2)
 {
-    const float sigma_x = student_t_impl_sigma(sigma[0]), sigma_y = student_t_impl_sigma(sigma[1]);
-    const float x = m[0] / sigma_x, y = m[1] / sigma_y, z = m[2];
-    const float scale = 1.0f / (3.14159265f * sigma_x * sigma_y);
-    const float z2 = z * z, part = shape->d_s * (x * x + y * y);
+    const float x = m[0] / lobe->sigma_x, y = m[1] / lobe->sigma_y, z = m[2];
+    const float scale = 1.0f / (3.14159265f * lobe->sigma_x * lobe->sigma_y);
+    const float z2 = z * z, part = lobe->constants.d_s * (x * x + y * y);
     const float b = student_t_impl_max(z2 + part, STUDENT_T_SMALLEST);
-    float root = 1.0f / b; /* of pi sigma_x sigma_y D = b^-gamma z^(2 gamma - 4) */
+    float root = length2 / b; /* of pi sigma_x sigma_y D = b^-gamma z^(2 gamma - 4), for length 1 */
     if (!(z > 0.0f && part >= 0.0f)) return 0.0f;
-    if (!shape->is_ggx) {
+    if (!lobe->constants.is_ggx) {
         /* ln(b/z2), where z2 may underflow. */
         const float growth =
             part < 1e3f * z2 ? log1pf(part / z2) : logf(b) - 2.0f * logf(z);
-        root *= expf(shape->d_power * growth);
+        root *= expf(lobe->constants.d_power * growth);
     }
     return student_t_impl_finite((scale * root) * root);
 }
 
-/* Smith's masking G1(w) in [0, 1]. */
-STUDENT_T_FUNCTION float
-student_t_g1(const student_t_shape *shape, const float sigma[2], const float w[3])
+/* Normal distribution function D(m): D(m) (m.n) integrates to 1 over all m. */
+STUDENT_T_FUNCTION float student_t_lobe_d(const student_t_lobe *lobe, const float m[3])
 {
-    const student_t_impl_direction d =
-        student_t_impl_stretch(student_t_impl_sigma(sigma[0]), student_t_impl_sigma(sigma[1]), w);
-    return student_t_impl_min(d.z * student_t_impl_inverse_area(shape, d), 1.0f);
+    return student_t_impl_d(lobe, m, 1.0f);
+}
+
+/* Smith's masking G1(w) in [0, 1]. */
+STUDENT_T_FUNCTION float student_t_lobe_g1(const student_t_lobe *lobe, const float w[3])
+{
+    const student_t_impl_direction d = student_t_impl_stretch(lobe, w);
+    return student_t_impl_min(d.z * student_t_impl_inverse_area(lobe, d), 1.0f);
 }
 
 /* Smith's lambda(w) = 1/G1 - 1, infinite at and below the horizon. Its absolute error is that of
  * G1. */
-STUDENT_T_FUNCTION float
-student_t_lambda(const student_t_shape *shape, const float sigma[2], const float w[3])
+STUDENT_T_FUNCTION float student_t_lobe_lambda(const student_t_lobe *lobe, const float w[3])
 {
-    return 1.0f / student_t_g1(shape, sigma, w) - 1.0f;
+    return 1.0f / student_t_lobe_g1(lobe, w) - 1.0f;
 }
 
-/* Masking and shadowing G2 of view and light. */
-STUDENT_T_FUNCTION float student_t_g2(const student_t_shape *shape, const float sigma[2],
-                                      const float v[3], const float l[3],
-                                      enum student_t_masking masking)
+/* G2 of the G1 of two directions. */
+STUDENT_T_FUNCTION float student_t_impl_g2(float a, float b, enum student_t_masking masking)
 {
-    const float a = student_t_g1(shape, sigma, v), b = student_t_g1(shape, sigma, l);
     const float both = a * b, sum = a + b - both;
     if (masking == STUDENT_T_UNCORRELATED) return both;
     return sum > 0.0f ? both / sum : 0.0f;
 }
 
-/* The weight f cos/pdf of a light reflected off a sampled visible normal, without Fresnel:
- * G2(v, l)/G1(v) in [0, 1]. */
-STUDENT_T_FUNCTION float student_t_reflection_weight(const student_t_shape *shape,
-                                                     const float sigma[2], const float v[3],
-                                                     const float l[3],
-                                                     enum student_t_masking masking)
+/* Masking and shadowing G2 of view and light. */
+STUDENT_T_FUNCTION float student_t_lobe_g2(const student_t_lobe *lobe, const float v[3],
+                                           const float l[3], enum student_t_masking masking)
 {
-    const float b = student_t_g1(shape, sigma, l);
-    if (!(v[2] > 0.0f && b > 0.0f)) return 0.0f;
-    if (masking == STUDENT_T_UNCORRELATED) return b;
-    return b / (b + student_t_g1(shape, sigma, v) * (1.0f - b));
+    return student_t_impl_g2(student_t_lobe_g1(lobe, v), student_t_lobe_g1(lobe, l), masking);
 }
 
+/* G2/G1(v) of the G1 of a view above the horizon and that of a light. */
+STUDENT_T_FUNCTION float student_t_impl_weight(float a, float b, enum student_t_masking masking)
+{
+    if (!(b > 0.0f)) return 0.0f;
+    if (masking == STUDENT_T_UNCORRELATED) return b;
+    return b / (b + a * (1.0f - b));
+}
+
+/* The weight f cos/pdf of a light reflected off a sampled visible normal, without Fresnel:
+ * G2(v, l)/G1(v) in [0, 1]. */
+STUDENT_T_FUNCTION float student_t_lobe_reflection_weight(const student_t_lobe *lobe,
+                                                          const float v[3], const float l[3],
+                                                          enum student_t_masking masking)
+{
+    if (!(v[2] > 0.0f)) return 0.0f;
+    return student_t_impl_weight(student_t_lobe_g1(lobe, v), student_t_lobe_g1(lobe, l), masking);
+}
+
+/* What a facet reflects or refracts between a view and a light. */
+typedef struct student_t_impl_facet {
+    float density; /* D G1(v)/v_z: four times the density of the reflected light */
+    float weight;  /* G2(v, l)/G1(v) */
+} student_t_impl_facet;
+
+/* The facet of a normal m, whose length squared is given, between v and l, all above the horizon;
+ * of light that is transmitted l is the opposite. */
+STUDENT_T_FUNCTION student_t_impl_facet
+student_t_impl_facet_of(const student_t_lobe *lobe, const float v[3], const float m[3],
+                        float length2, const float l[3], enum student_t_masking masking)
+{
+    student_t_impl_facet facet;
+    const student_t_impl_direction d = student_t_impl_stretch(lobe, v);
+    const float inverse = student_t_impl_inverse_area(lobe, d);
+    const float a = student_t_impl_min(d.z * inverse, 1.0f);
+    facet.density = student_t_impl_finite(student_t_impl_d(lobe, m, length2) * inverse);
+    facet.weight = student_t_impl_weight(a, student_t_lobe_g1(lobe, l), masking);
+    return facet;
+}
+
+/* Returns f without the cosine, D G2/(4 (v.n) (l.n)), for facets that reflect all light, and in
+ * *pdf the density with which visible normals reflect v to l, with one D for both. Both are 0 where
+ * v or l is not above the horizon. */
+STUDENT_T_FUNCTION float student_t_lobe_eval_pdf(const student_t_lobe *lobe, const float v[3],
+                                                 const float l[3], enum student_t_masking masking,
+                                                 float *pdf)
+{
+    float m[3], length2;
+    student_t_impl_facet facet;
+    *pdf = 0.0f;
+    m[0] = v[0] + l[0];
+    m[1] = v[1] + l[1];
+    m[2] = v[2] + l[2];
+    length2 = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
+    if (!(v[2] > 0.0f && l[2] > 0.0f && length2 <= STUDENT_T_LARGEST)) return 0.0f;
+    facet = student_t_impl_facet_of(lobe, v, m, length2, l, masking);
+    *pdf = 0.25f * facet.density;
+    return student_t_impl_finite(facet.weight * *pdf * student_t_impl_finite(1.0f / l[2]));
+}
+
+/* Whether a lobe is so narrow that its surface is better rendered as a mirror: whether the mean
+ * absolute slope along the rougher direction is below 1e-3, and at most 2.5e-3 are masked at the
+ * cosine 0.01. That is sigma below 1e-3 for gamma >= 2, 4e-4 for 1.8, 6e-5 for 1.6, 2e-5 for 1.55,
+ * and 2e-7 for 1.501. */
+STUDENT_T_FUNCTION int student_t_effectively_smooth(const student_t_lobe *lobe)
+{
+    const float sigma = student_t_impl_max(lobe->sigma_x, lobe->sigma_y);
+    student_t_impl_direction d = {0.0f, 0.0f, 1.0f, 1.0f, 0.0f, 1.0f};
+    float mean;
+    if (!(0.56f * sigma < 1e-3f)) return 0; /* no gamma has a smaller mean than 0.56 sigma */
+    mean = 2.0f / student_t_impl_inverse_area(lobe, d);
+    d.z = 0.01f;
+    d.rho = 0.99995f * sigma;
+    d.rho2 = d.rho * d.rho;
+    return sigma * mean < 1e-3f && 1.0f - d.z * student_t_impl_inverse_area(lobe, d) <= 2.5e-3f;
+}

@@ -9,16 +9,19 @@ use super::{AlbedoTable, ExportFile, Shape};
 /// The functions, which do not depend on a shape.
 const HEADER: &str = concat!(
     include_str!("head.h"),
+    include_str!("numbers.h"),
+    include_str!("lobe.h"),
     include_str!("masking.h"),
     include_str!("normals.h"),
     include_str!("albedo.h"),
+    include_str!("shape.h"),
     "\n#endif\n"
 );
 
 const HEADER_NAME: &str = "student_t.h";
 
 /// `STUDENT_T_LAYOUT` of the header.
-const LAYOUT: u32 = 2;
+const LAYOUT: u32 = 3;
 
 pub(super) fn files(shapes: &[Shape]) -> Vec<ExportFile> {
     let mut files = vec![ExportFile::new(HEADER_NAME, HEADER)];
@@ -104,17 +107,27 @@ fn comment(shape: &Shape, name: &str) -> String {
 
 /// The definition of the shape: values in the order of the members of `student_t_shape`.
 fn definition(shape: &Shape, name: &str) -> String {
-    let [lobe, uncorrelated, correlated] = shape.lists().map(|members| {
-        let values = members.into_iter().map(|Member { name: member, value }| {
-            format!("{}, /* {member} */", literal(value, name))
-        });
-        values.collect::<Vec<_>>()
-    });
-    let [a, b] = [uncorrelated, correlated].map(|values| values.join("\n        "));
+    let [lobe, uncorrelated, correlated] = shape.lists();
+    let lines = |members: Vec<Member>, indent: &str| -> String {
+        let one = |Member { name: member, value }: Member| {
+            format!("{indent}{}, /* {member} */\n", literal(value, name))
+        };
+        members.into_iter().map(one).collect()
+    };
+    let gamma = float((shape.gamma as f32).min(f32::MAX));
+    let (tables, constants) = lobe.into_iter().partition(Member::is_table);
+    let (constants, tables) = (lines(constants, "        "), lines(tables, "    "));
+    let [a, b] = [uncorrelated, correlated].map(|members| lines(members, "        "));
     format!(
-        "\nSTUDENT_T_DATA student_t_shape {name} = {{\n    {}\n    {{{{\n        {a}\n    }}, {{\n        \
-         {b}\n    }}}}\n}};\n",
-        lobe.join("\n    ")
+        "\nSTUDENT_T_DATA student_t_shape {name} = {{\n    {gamma}, /* gamma */\n    \
+         {{\n{constants}    }},\n{tables}    {{{{\n{a}    }}, {{\n{b}    }}}}\n}};
+
+/* The lobe of this shape and a roughness along x and y. */
+STUDENT_T_FUNCTION student_t_lobe {name}_lobe(float sigma_x, float sigma_y)
+{{
+    return student_t_lobe_of(&{name}, sigma_x, sigma_y);
+}}
+"
     )
 }
 
@@ -174,10 +187,13 @@ mod tests {
             names.collect()
         };
         let shape = Shape::bind(&microfacet_sampler::Tables::embedded(), 1.7).unwrap();
-        let [mut lobe, albedo, _] =
-            shape.lists().map(|list| list.iter().map(|member| member.name).collect::<Vec<_>>());
-        lobe.push("albedo[2]");
-        assert_eq!(members("student_t_shape"), lobe);
+        let [lobe, uncorrelated, _] = shape.lists();
+        let names = |list: &[Member]| list.iter().map(|member| member.name).collect::<Vec<_>>();
+        let (tables, constants): (Vec<_>, Vec<_>) = lobe.into_iter().partition(Member::is_table);
+        assert_eq!(members("student_t_constants"), names(&constants));
+        let names_of_shape = [&["gamma", "constants"][..], &names(&tables), &["albedo[2]"]].concat();
+        assert_eq!(members("student_t_shape"), names_of_shape);
+        let albedo = names(&uncorrelated);
         assert_eq!(members("student_t_albedo_table"), albedo);
     }
 }

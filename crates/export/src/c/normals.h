@@ -1,3 +1,4 @@
+
 /* ---- Visible normals ------------------------------------------------------------------------- */
 
 /* The sine and the cosine of 2 pi u for u in [0, 1], to 2e-7: the polynomial through Chebyshev's
@@ -59,10 +60,10 @@ STUDENT_T_FUNCTION float student_t_impl_sign(int negative) { return (float)(1 - 
  * the plane of incidence and t : tz across it, in units of sqrt(z z + s x x). Tables hold the
  * distance g of a slope's half tangent from the end of its half, so that the slope is 2(1 - g) over
  * g(2 - g). */
-STUDENT_T_FUNCTION void student_t_impl_sample_tables(const student_t_shape *shape, float sigma_x,
-                                                     float sigma_y, const float v[3],
+STUDENT_T_FUNCTION void student_t_impl_sample_tables(const student_t_lobe *lobe, const float v[3],
                                                      const float u[2], float m[3])
 {
+    const student_t_constants *c = &lobe->constants;
     student_t_impl_direction d;
     float along = u[0], number = 1.0f, length, at, silhouette, x, z, t, tz, norm;
     float sign = 1.0f, shrink = 1.0f, clear;
@@ -72,31 +73,31 @@ STUDENT_T_FUNCTION void student_t_impl_sample_tables(const student_t_shape *shap
     {
         const float root = sqrtf(sqrtf(student_t_impl_end(u[1])));
         float w, g;
-        const int cell = student_t_impl_cell(root * shape->across_scale, &w);
-        g = student_t_impl_cubic(shape->across + 4 * cell, w);
+        const int cell = student_t_impl_cell(root * c->across_scale, &w);
+        g = student_t_impl_cubic(lobe->shape->across + 4 * cell, w);
         t = (g - 1.0f) * student_t_impl_sign(u[1] > 0.5f);
         tz = g * (2.0f - g);
     }
 
     /* The view, among the rows of the table, and the g of its silhouette in the first half. */
-    d = student_t_impl_stretch(sigma_x, sigma_y, v);
+    d = student_t_impl_stretch(lobe, v);
     length = sqrtf(d.rho2 + d.z * d.z);
     {
         const float steep = length + d.z;
         /* Next to normal incidence 1 - tau loses digits, which the narrow cells there need. */
-        silhouette = shape->heavy ? d.rho * (steep + d.rho) / (steep * (d.rho + length))
+        silhouette = c->heavy_per_row > 0.0f ? d.rho * (steep + d.rho) / (steep * (d.rho + length))
                                   : 1.0f - d.z / (d.rho + length);
         silhouette = student_t_impl_unit(silhouette);
-        at = student_t_impl_max(shape->rows_first - shape->rows_first * silhouette,
-                                shape->rows_second_end - shape->rows_second * silhouette);
-        at = student_t_impl_max(at, shape->rows - shape->rows_third * silhouette);
+        at = student_t_impl_max(c->rows_first - c->rows_first * silhouette,
+                                c->rows_second_end - c->rows_second * silhouette);
+        at = student_t_impl_max(at, c->rows - c->rows_third * silhouette);
     }
 
     /* The first number chooses between the tables and what is in none, which comes last. */
-    if (shape->heavy) {
+    if (c->heavy_per_row > 0.0f) {
         float w, share, rest;
-        const int cell = student_t_impl_cell(at * shape->heavy_per_row, &w);
-        share = student_t_impl_cubic(shape->heavy + 4 * cell, w);
+        const int cell = student_t_impl_cell(at * c->heavy_per_row, &w);
+        share = student_t_impl_cubic(lobe->shape->heavy + 4 * cell, w);
         rest = 1.0f - share;
         along = student_t_impl_unit(along);
         is_heavy = along > rest;
@@ -108,11 +109,11 @@ STUDENT_T_FUNCTION void student_t_impl_sample_tables(const student_t_shape *shap
     if (is_heavy) {
         /* (1 + s x x)^(-1/2) = number^exponent, at least 2^-100; what would make z subnormal is
          * kept apart. */
-        const float power = log2f(student_t_impl_max(number, 1e-37f)) * shape->heavy_exponent;
+        const float power = log2f(student_t_impl_max(number, 1e-37f)) * c->heavy_exponent;
         const float zeta = exp2f(student_t_impl_max(power, -100.0f));
         const float large = student_t_impl_max(zeta, 1e-15f);
         x = 0.5f * sqrtf(student_t_impl_max((1.0f - zeta) * (1.0f + zeta), 0.0f));
-        z = large * shape->heavy_root_s;
+        z = large * c->heavy_root_s;
         shrink = zeta / large;
         clear = x + z;
     } else {
@@ -120,10 +121,10 @@ STUDENT_T_FUNCTION void student_t_impl_sample_tables(const student_t_shape *shap
         const float root = sqrtf(sqrtf(student_t_impl_end(along)));
         const float *low, *high;
         float w, between, g, b0, b1, b2, b3;
-        const int cell = student_t_impl_cell(root * shape->along_scale, &w);
+        const int cell = student_t_impl_cell(root * c->along_scale, &w);
         const int row = student_t_impl_cell(at, &between);
-        low = shape->slopes + 2 * ((2 * row + half) * shape->numbers + cell);
-        high = low + 4 * shape->numbers;
+        low = lobe->shape->slopes + 2 * ((2 * row + half) * c->numbers + cell);
+        high = low + 4 * c->numbers;
         /* Linear between the views, a cubic through values and slopes along the number. */
         b0 = 1.0f + w * (w * (w * 2.0f - 3.0f));
         b1 = w * (1.0f + w * (w - 2.0f));
@@ -140,12 +141,12 @@ STUDENT_T_FUNCTION void student_t_impl_sample_tables(const student_t_shape *shap
     }
 
     /* The normal, turned to the azimuth of the view. */
-    norm = sqrtf(z * z + (4.0f * shape->s) * (x * x));
+    norm = sqrtf(z * z + (4.0f * c->s) * (x * x));
     {
         const float vx = v[0], vy = v[1];
         const float ahead = x * (sign * tz), aside = norm * t;
-        student_t_impl_raise(sigma_x * (ahead * d.x - aside * d.y),
-                             sigma_y * (ahead * d.y + aside * d.x), z * (0.5f * (d.frame * tz)),
+        student_t_impl_raise(lobe->sigma_x * (ahead * d.x - aside * d.y),
+                             lobe->sigma_y * (ahead * d.y + aside * d.x), z * (0.5f * (d.frame * tz)),
                              shrink, m);
         /* v.m is at least rho length/|m| times g tz less that of the silhouette, from which ten
          * roundings, of terms of up to rho length (3 + 6 |t|)/|m|, cannot take it below 0. */
@@ -157,28 +158,25 @@ STUDENT_T_FUNCTION void student_t_impl_sample_tables(const student_t_shape *shap
 /* A normal m visible from v, from two numbers. u[0] chooses the slope along the azimuth of the view
  * and u[1] that across, both rising (for gamma < 1.8 within either of two parts); for GGX they are
  * height and azimuth of a point of a spherical cap. m is of unit length and above the horizon. */
-STUDENT_T_FUNCTION void student_t_sample_visible_normal(const student_t_shape *shape,
-                                                        const float sigma[2], const float v[3],
+STUDENT_T_FUNCTION void student_t_lobe_sample_visible_normal(const student_t_lobe *lobe, const float v[3],
                                                         const float u[2], float m[3])
 {
-    const float sigma_x = student_t_impl_sigma(sigma[0]), sigma_y = student_t_impl_sigma(sigma[1]);
-    if (shape->is_ggx) {
-        student_t_impl_sample_cap(sigma_x, sigma_y, v, u, m);
+    if (lobe->constants.is_ggx) {
+        student_t_impl_sample_cap(lobe->sigma_x, lobe->sigma_y, v, u, m);
     } else {
-        student_t_impl_sample_tables(shape, sigma_x, sigma_y, v, u, m);
+        student_t_impl_sample_tables(lobe, v, u, m);
     }
 }
 
 /* Density of visible normals, max(0, v.m) D(m) G1(v)/(v.n). */
-STUDENT_T_FUNCTION float student_t_visible_normal_pdf(const student_t_shape *shape,
-                                                      const float sigma[2], const float v[3],
+STUDENT_T_FUNCTION float student_t_lobe_visible_normal_pdf(const student_t_lobe *lobe, const float v[3],
                                                       const float m[3])
 {
     const student_t_impl_direction d =
-        student_t_impl_stretch(student_t_impl_sigma(sigma[0]), student_t_impl_sigma(sigma[1]), v);
+        student_t_impl_stretch(lobe, v);
     const float facing = student_t_impl_max(v[0] * m[0] + v[1] * m[1] + v[2] * m[2], 0.0f);
-    const float density = facing * student_t_d(shape, sigma, m);
-    return student_t_impl_finite(density * student_t_impl_inverse_area(shape, d));
+    const float density = facing * student_t_lobe_d(lobe, m);
+    return student_t_impl_finite(density * student_t_impl_inverse_area(lobe, d));
 }
 
 /* The light l = 2 (v.m) m - v that v is reflected to. */
@@ -192,14 +190,13 @@ STUDENT_T_FUNCTION void student_t_reflect(const float v[3], const float m[3], fl
 
 /* Density of the light that v is reflected to by a visible normal m: that of m over 4 v.m, which is
  * D(m) G1(v)/(4 v.n). */
-STUDENT_T_FUNCTION float student_t_reflection_pdf(const student_t_shape *shape,
-                                                  const float sigma[2], const float v[3],
+STUDENT_T_FUNCTION float student_t_lobe_reflection_pdf(const student_t_lobe *lobe, const float v[3],
                                                   const float m[3])
 {
     const student_t_impl_direction d =
-        student_t_impl_stretch(student_t_impl_sigma(sigma[0]), student_t_impl_sigma(sigma[1]), v);
+        student_t_impl_stretch(lobe, v);
     if (!(v[0] * m[0] + v[1] * m[1] + v[2] * m[2] > 0.0f)) return 0.0f;
-    return student_t_impl_finite(0.25f * student_t_d(shape, sigma, m) *
-                                 student_t_impl_inverse_area(shape, d));
+    return student_t_impl_finite(0.25f * student_t_lobe_d(lobe, m) *
+                                 student_t_impl_inverse_area(lobe, d));
 }
 

@@ -1,0 +1,23 @@
+
+/* ---- Lobes: what a renderer makes at a hit ------------------------------------------------------
+ * A lobe holds no memory: make it where it is used, and forget it. It points to its tables. */
+
+STUDENT_T_FUNCTION float student_t_impl_sigma(float sigma)
+{
+    return student_t_impl_min(student_t_impl_max(sigma, 1e-8f), 1e6f);
+}
+
+/* The lobe of one shape and a roughness along x and along y, such as
+ * student_t_lobe_of(&student_t_gamma_3, 0.3f, 0.3f). */
+STUDENT_T_FUNCTION student_t_lobe
+student_t_lobe_of(const student_t_shape *shape, float sigma_x, float sigma_y)
+{
+    student_t_lobe lobe;
+    lobe.gamma = shape->gamma;
+    lobe.sigma_x = student_t_impl_sigma(sigma_x);
+    lobe.sigma_y = student_t_impl_sigma(sigma_y);
+    lobe.is_mirror = !(sigma_x > 0.0f && sigma_y > 0.0f);
+    lobe.constants = shape->constants;
+    lobe.shape = shape;
+    return lobe;
+}
