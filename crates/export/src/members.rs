@@ -11,12 +11,6 @@ pub(super) struct Member {
     pub(super) value: Value,
 }
 
-impl Member {
-    pub(super) fn is_table(&self) -> bool {
-        matches!(self.value, Value::Table(_))
-    }
-}
-
 pub(super) enum Value {
     /// Yes or no.
     Flag(bool),

@@ -128,13 +128,9 @@ typedef struct student_t_albedo_table {
     float weight, normal, share, kappa, spread, floor, slope;
 } student_t_albedo_table;
 
-/* The numbers that lookups of one gamma read. */
+/* What lookups of one gamma read of tables that may have more of them. */
 typedef struct student_t_constants {
-    int is_ggx;            /* gamma = 2: closed forms, and no tables but those of albedos */
-    float s;               /* 1/(gamma - 1), 0 for gamma = infinity */
-    float d_s, d_power;    /* s and 1 - gamma/2 of D, where s is never 0 */
-    float kappa;           /* of the coordinate of masking, z/(z + kappa rho) */
-    int masking_crowded;   /* whether that is 1 - sqrt(1 - it) */
+    int masking_crowded;   /* whether the coordinate of masking is 1 - sqrt(1 - it) */
     float masking_cells;
     float rows;            /* cells along the view, where the largest of three linear functions */
     float rows_first;      /* of r = 1 - z/(rho + length) is the place: rows_first (1 - r), */
@@ -145,14 +141,23 @@ typedef struct student_t_constants {
     float along_scale;     /* 2^(1/4) (numbers - 1) */
     float across_scale;    /* 2^(1/4) cells */
     float heavy_per_row;   /* cells of heavy shares in a row of slopes; 0 without such shares */
+} student_t_constants;
+
+/* The numbers of one gamma. */
+typedef struct student_t_law {
+    float s;               /* 1/(gamma - 1), 0 for gamma = infinity */
+    float d_s, d_power;    /* s and 1 - gamma/2 of D, where s is never 0 */
+    float kappa;           /* of the coordinate of masking, z/(z + kappa rho) */
     float heavy_exponent;  /* 1/(2 gamma - 3) */
     float heavy_root_s;    /* sqrt(s) */
-} student_t_constants;
+} student_t_law;
 
 /* One shape gamma. Tables are even in the coordinate of their views or random numbers, and have a
  * cell more than that reaches: the place of the end itself. */
 typedef struct student_t_shape {
     float gamma;           /* the largest finite number for infinity, which is Beckmann */
+    int is_ggx;            /* gamma = 2: closed forms, and no tables but those of albedos */
+    student_t_law law;
     student_t_constants constants;
     const float *masking;  /* [cells + 1][4]: cubics, of G1/coordinate/cells */
     const float *slopes;   /* [rows + 2][2][numbers][2], and a node: value and slope, the half for
@@ -166,10 +171,14 @@ typedef struct student_t_shape {
 /* The lobe of one gamma and roughness: what a renderer makes at a hit, and hands to the functions
  * below. Only the first three members are for users. */
 typedef struct student_t_lobe {
+    float sigma_x;           /* in [1e-8, 1e6] */
     float gamma;             /* the largest finite number for infinity */
-    float sigma_x, sigma_y;  /* in [1e-8, 1e6] */
+    float sigma_y;           /* in [1e-8, 1e6]; not beside the other, since compilers would load
+                              * both at once, and wait until both are stored */
     int is_mirror;           /* a sigma was not above 0: its albedo is 1 */
-    student_t_constants constants;
+    int is_ggx;              /* closed forms */
+    student_t_law law;
+    const student_t_constants *constants;
     const student_t_shape *shape;
 } student_t_lobe;
 

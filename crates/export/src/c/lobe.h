@@ -17,7 +17,9 @@ student_t_lobe_of(const student_t_shape *shape, float sigma_x, float sigma_y)
     lobe.sigma_x = student_t_impl_sigma(sigma_x);
     lobe.sigma_y = student_t_impl_sigma(sigma_y);
     lobe.is_mirror = !(sigma_x > 0.0f && sigma_y > 0.0f);
-    lobe.constants = shape->constants;
+    lobe.is_ggx = shape->is_ggx;
+    lobe.law = shape->law;
+    lobe.constants = &shape->constants;
     lobe.shape = shape;
     return lobe;
 }

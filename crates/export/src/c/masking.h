@@ -37,12 +37,12 @@ student_t_impl_stretch(const student_t_lobe *lobe, const float w[3])
 STUDENT_T_FUNCTION float
 student_t_impl_inverse_area(const student_t_lobe *lobe, student_t_impl_direction d)
 {
-    const student_t_constants *c = &lobe->constants;
-    if (c->is_ggx) {
+    const student_t_constants *c = lobe->constants;
+    if (lobe->is_ggx) {
         const float length = sqrtf(d.rho2 + d.z * d.z);
         return 2.0f / student_t_impl_max(d.z + length, STUDENT_T_SMALLEST);
     } else {
-        const float cells = c->masking_cells, across = c->kappa * d.rho;
+        const float cells = c->masking_cells, across = lobe->law.kappa * d.rho;
         const float area = student_t_impl_max(d.z + across, 1e-30f); /* less than any has */
         const float r = cells / area;
         float at = d.z * r, w;
@@ -81,15 +81,15 @@ student_t_impl_d(const student_t_lobe *lobe, const float m[3], float length2)
 {
     const float x = m[0] / lobe->sigma_x, y = m[1] / lobe->sigma_y, z = m[2];
     const float scale = 1.0f / (3.14159265f * lobe->sigma_x * lobe->sigma_y);
-    const float z2 = z * z, part = lobe->constants.d_s * (x * x + y * y);
+    const float z2 = z * z, part = lobe->law.d_s * (x * x + y * y);
     const float b = student_t_impl_max(z2 + part, STUDENT_T_SMALLEST);
     float root = length2 / b; /* of pi sigma_x sigma_y D = b^-gamma z^(2 gamma - 4), for length 1 */
     if (!(z > 0.0f && part >= 0.0f)) return 0.0f;
-    if (!lobe->constants.is_ggx) {
+    if (!lobe->is_ggx) {
         /* ln(b/z2), where z2 may underflow. */
         const float growth =
             part < 1e3f * z2 ? log1pf(part / z2) : logf(b) - 2.0f * logf(z);
-        root *= expf(lobe->constants.d_power * growth);
+        root *= expf(lobe->law.d_power * growth);
     }
     return student_t_impl_finite((scale * root) * root);
 }

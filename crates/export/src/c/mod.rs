@@ -105,6 +105,20 @@ fn comment(shape: &Shape, name: &str) -> String {
     )
 }
 
+/// The members of a lobe by the struct of the header that holds them: `student_t_law`,
+/// `student_t_constants`, and the tables in `student_t_shape` itself. GGX's flag is apart.
+fn grouped(lobe: Vec<Member>) -> [Vec<Member>; 3] {
+    const LAW: [&str; 6] = ["s", "d_s", "d_power", "kappa", "heavy_exponent", "heavy_root_s"];
+    let of = |member: &Member| match member.value {
+        Value::Table(_) => 2,
+        _ => usize::from(!LAW.contains(&member.name)),
+    };
+    let mut groups = [vec![], vec![], vec![]];
+    let rest = lobe.into_iter().filter(|member| member.name != "is_ggx");
+    rest.for_each(|member| groups[of(&member)].push(member));
+    groups
+}
+
 /// The definition of the shape: values in the order of the members of `student_t_shape`.
 fn definition(shape: &Shape, name: &str) -> String {
     let [lobe, uncorrelated, correlated] = shape.lists();
@@ -114,13 +128,22 @@ fn definition(shape: &Shape, name: &str) -> String {
         };
         members.into_iter().map(one).collect()
     };
+    let inner = "        ";
     let gamma = float((shape.gamma as f32).min(f32::MAX));
-    let (tables, constants) = lobe.into_iter().partition(Member::is_table);
-    let (constants, tables) = (lines(constants, "        "), lines(tables, "    "));
-    let [a, b] = [uncorrelated, correlated].map(|members| lines(members, "        "));
+    let is_ggx = u8::from(shape.tables.is_none());
+    let [law, constants, tables] = grouped(lobe);
+    let (law, constants, tables) =
+        (lines(law, inner), lines(constants, inner), lines(tables, "    "));
+    let [a, b] = [uncorrelated, correlated].map(|members| lines(members, inner));
     format!(
-        "\nSTUDENT_T_DATA student_t_shape {name} = {{\n    {gamma}, /* gamma */\n    \
-         {{\n{constants}    }},\n{tables}    {{{{\n{a}    }}, {{\n{b}    }}}}\n}};
+        "
+STUDENT_T_DATA student_t_shape {name} = {{
+    {gamma}, /* gamma */
+    {is_ggx}, /* is_ggx */
+    {{\n{law}    }},
+    {{\n{constants}    }},
+{tables}    {{{{\n{a}    }}, {{\n{b}    }}}}
+}};
 
 /* The lobe of this shape and a roughness along x and y. */
 STUDENT_T_FUNCTION student_t_lobe {name}_lobe(float sigma_x, float sigma_y)
@@ -189,10 +212,12 @@ mod tests {
         let shape = Shape::bind(&microfacet_sampler::Tables::embedded(), 1.7).unwrap();
         let [lobe, uncorrelated, _] = shape.lists();
         let names = |list: &[Member]| list.iter().map(|member| member.name).collect::<Vec<_>>();
-        let (tables, constants): (Vec<_>, Vec<_>) = lobe.into_iter().partition(Member::is_table);
+        let [law, constants, tables] = grouped(lobe);
+        assert_eq!(members("student_t_law"), names(&law));
         assert_eq!(members("student_t_constants"), names(&constants));
-        let names_of_shape = [&["gamma", "constants"][..], &names(&tables), &["albedo[2]"]].concat();
-        assert_eq!(members("student_t_shape"), names_of_shape);
+        let first = ["gamma", "is_ggx", "law", "constants"];
+        let all = [&first[..], &names(&tables), &["albedo[2]"]].concat();
+        assert_eq!(members("student_t_shape"), all);
         let albedo = names(&uncorrelated);
         assert_eq!(members("student_t_albedo_table"), albedo);
     }

@@ -63,7 +63,7 @@ STUDENT_T_FUNCTION float student_t_impl_sign(int negative) { return (float)(1 - 
 STUDENT_T_FUNCTION void student_t_impl_sample_tables(const student_t_lobe *lobe, const float v[3],
                                                      const float u[2], float m[3])
 {
-    const student_t_constants *c = &lobe->constants;
+    const student_t_constants *c = lobe->constants;
     student_t_impl_direction d;
     float along = u[0], number = 1.0f, length, at, silhouette, x, z, t, tz, norm;
     float sign = 1.0f, shrink = 1.0f, clear;
@@ -109,11 +109,11 @@ STUDENT_T_FUNCTION void student_t_impl_sample_tables(const student_t_lobe *lobe,
     if (is_heavy) {
         /* (1 + s x x)^(-1/2) = number^exponent, at least 2^-100; what would make z subnormal is
          * kept apart. */
-        const float power = log2f(student_t_impl_max(number, 1e-37f)) * c->heavy_exponent;
+        const float power = log2f(student_t_impl_max(number, 1e-37f)) * lobe->law.heavy_exponent;
         const float zeta = exp2f(student_t_impl_max(power, -100.0f));
         const float large = student_t_impl_max(zeta, 1e-15f);
         x = 0.5f * sqrtf(student_t_impl_max((1.0f - zeta) * (1.0f + zeta), 0.0f));
-        z = large * c->heavy_root_s;
+        z = large * lobe->law.heavy_root_s;
         shrink = zeta / large;
         clear = x + z;
     } else {
@@ -141,7 +141,7 @@ STUDENT_T_FUNCTION void student_t_impl_sample_tables(const student_t_lobe *lobe,
     }
 
     /* The normal, turned to the azimuth of the view. */
-    norm = sqrtf(z * z + (4.0f * c->s) * (x * x));
+    norm = sqrtf(z * z + (4.0f * lobe->law.s) * (x * x));
     {
         const float vx = v[0], vy = v[1];
         const float ahead = x * (sign * tz), aside = norm * t;
@@ -161,7 +161,7 @@ STUDENT_T_FUNCTION void student_t_impl_sample_tables(const student_t_lobe *lobe,
 STUDENT_T_FUNCTION void student_t_lobe_sample_visible_normal(const student_t_lobe *lobe, const float v[3],
                                                         const float u[2], float m[3])
 {
-    if (lobe->constants.is_ggx) {
+    if (lobe->is_ggx) {
         student_t_impl_sample_cap(lobe->sigma_x, lobe->sigma_y, v, u, m);
     } else {
         student_t_impl_sample_tables(lobe, v, u, m);
