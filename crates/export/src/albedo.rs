@@ -80,6 +80,11 @@ impl AlbedoTable {
         Some(table)
     }
 
+    /// Without its values: lookups in C then take the surface for a mirror.
+    pub(super) fn leave_out(&mut self) {
+        (self.values, self.averages) = (Vec::new(), Vec::new());
+    }
+
     /// Takes the averages at `parts` nodes a cell, and measures their error.
     fn refine(&mut self, parts: usize, average: impl Fn(f64) -> Option<[f64; 3]>) -> Option<()> {
         let cells = (self.sigmas - 1) * parts;

@@ -20,6 +20,7 @@ use microfacet_baker::store;
 
 mod albedo;
 mod c;
+mod family;
 mod members;
 pub mod numbers;
 mod shader;
@@ -27,6 +28,7 @@ mod shape;
 pub mod texture;
 
 pub use albedo::AlbedoTable;
+pub use family::Family;
 pub use members::Part;
 pub use shader::{Language, Storage, texture_rows};
 pub use shader::{WIDTH, append_some, for_webgl, wgsl_crc32};
@@ -80,4 +82,10 @@ pub fn files(target: Target, shapes: &[Shape]) -> Vec<ExportFile> {
         Target::C => c::files(shapes),
         Target::Shader(language, storage) => shader::files(language, storage, shapes),
     }
+}
+
+/// The files of C for every shape at once: the functions, and the tables as a header or, if
+/// `binary`, as a file of bytes.
+pub fn family_files(family: &Family, binary: bool) -> Vec<ExportFile> {
+    c::family(family, binary)
 }

@@ -77,7 +77,7 @@ impl Shape {
             parts.push(part("across", &tables.across));
             parts.extend(tables.heavy.as_ref().map(|heavy| part("heavy", &heavy.shares)));
         }
-        for table in &self.albedos {
+        for table in self.albedos.iter().filter(|table| !table.values.is_empty()) {
             let [values, averages] = names(table);
             parts.extend([part(values, &table.values), part(averages, &table.averages)]);
         }
@@ -121,13 +121,13 @@ fn lobe(shape: &Shape) -> Vec<Member> {
 }
 
 fn albedo(table: &AlbedoTable) -> Vec<Member> {
-    let [values, averages] = names(table);
+    let ([values, averages], here) = (names(table), !table.values.is_empty());
     let [first, last] = table.ends;
     let (sigma, view) = (table.roughness, table.view);
     let number = |x: f64| Value::Number(x as f32);
     let members = [
-        ("values", Value::Table(Some(values))),
-        ("averages", Value::Table(Some(averages))),
+        ("values", Value::Table(here.then_some(values))),
+        ("averages", Value::Table(here.then_some(averages))),
         ("sigmas", Value::Count(table.sigmas)),
         ("average_sigmas", Value::Count(table.averages.len())),
         ("views", Value::Count(table.views)),

@@ -75,6 +75,11 @@ impl Shape {
         })
     }
 
+    /// Leaves out the albedos, for exports to C.
+    pub fn leave_out_albedos(&mut self) {
+        self.albedos.iter_mut().for_each(AlbedoTable::leave_out);
+    }
+
     /// The larger of `of` under both forms of masking.
     pub(super) fn worst_albedo(&self, of: impl Fn(&AlbedoTable) -> Option<f64>) -> Option<f64> {
         self.albedos.iter().filter_map(of).reduce(f64::max)

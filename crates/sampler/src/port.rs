@@ -7,6 +7,8 @@ use crate::material::slices;
 use crate::{MaterialError, Tables};
 
 pub use crate::bsdf::steep_cosine;
+pub use crate::albedo::family::tables::VolumeTables;
+pub use crate::material::family_tables::{ByShape, PartTables, WindowCell, WindowTables};
 pub use crate::material::shape::{HeavyTables, ShapeTables};
 
 /// The tables that a lobe of one shape reads: of masking, of slopes in the plane of incidence, and

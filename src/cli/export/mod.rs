@@ -8,7 +8,7 @@ use std::ffi::OsString;
 use clap::Subcommand;
 
 use microfacet_baker::store::OutputFolder;
-use microfacet_export::{ExportFile, Language, Target};
+use microfacet_export::{ExportFile, Language};
 
 use super::{Result, bail, summarize};
 
@@ -18,7 +18,8 @@ use super::{Result, bail, summarize};
 #[command(after_help = "Example:
   microfacet-bake export c --gamma 3 --gamma 1.65 --out student-t
 writes student_t.h, student_t_gamma_3.h and student_t_gamma_1p65.h: headers for C99,
-C++11, CUDA and HIP. student_t.h says how to use them.
+C++11, CUDA and HIP. student_t.h says how to use them. With --family in place of shapes
+student_t_family.h has all gamma.
   microfacet-bake export wgsl --gamma 3 --gamma 1.65 --out student-t
 writes student_t.wgsl, with the functions, a program that uses them, and the tables of
 both shapes as student_t.bin, described by student_t.json.
@@ -35,7 +36,7 @@ pub(super) struct Args {
 enum TargetArg {
     /// Headers for C99, C++11, CUDA and HIP.
     #[command(aliases = ["C", "c++", "cpp", "cuda", "hip"])]
-    C(shape::Args),
+    C(shape::CArgs),
     /// A module of WGSL: WebGPU.
     #[command(aliases = ["WGSL"])]
     Wgsl(shape::ShaderArgs),
@@ -62,7 +63,7 @@ enum TargetArg {
 
 pub(super) fn run(args: Args) -> Result<()> {
     let (language, args) = match args.target {
-        TargetArg::C(args) => return shape::run(Target::C, &args),
+        TargetArg::C(args) => return shape::c(&args),
         TargetArg::Lut(args) => return lut::run(&args),
         TargetArg::Wgsl(args) => (Language::Wgsl, args),
         TargetArg::Glsl(args) => (Language::Glsl, args),

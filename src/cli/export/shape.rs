@@ -3,19 +3,17 @@
 use std::path::PathBuf;
 
 use microfacet_baker::store::OutputFolder;
-use microfacet_export::{Language, Shape, Storage, Target, files, texture_rows};
+use microfacet_export::{
+    ExportFile, Family, Language, Shape, Storage, Target, family_files, files, texture_rows,
+};
 use microfacet_tables::SIGMA_MAX;
 
 use crate::cli::words::distinct;
 use crate::cli::{Result, note, tables, values};
 
-/// What every export of shapes asks for.
+/// Where tables come from and files go to.
 #[derive(clap::Args)]
-pub(super) struct Args {
-    /// Shape in [1.501, inf]; 2 is GGX, inf is Beckmann. Several are separated by commas, or in
-    /// options of their own.
-    #[arg(long, value_name = "G", required = true, value_delimiter = ',', value_parser = values::gamma)]
-    gamma: Vec<f64>,
+struct Ends {
     /// A table file, or a folder with one; the embedded default if absent.
     #[arg(long)]
     tables: Option<PathBuf>,
@@ -24,11 +22,41 @@ pub(super) struct Args {
     out: PathBuf,
 }
 
+/// Headers of C.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:
+  microfacet-bake export c --family --out student-t
+Every gamma and sigma, for renderers that have both at each hit.
+  microfacet-bake export c --gamma 3 --gamma 1.65 --out student-t
+Two shapes for any sigma.")]
+pub(super) struct CArgs {
+    /// Shape in [1.501, inf]; 2 is GGX, inf is Beckmann. Several are separated by commas, or in
+    /// options of their own.
+    #[arg(long, value_name = "G", required_unless_present = "family", value_delimiter = ',', value_parser = values::gamma)]
+    gamma: Vec<f64>,
+    /// All shapes, with gamma as an argument of each call, as student_t_family.h.
+    #[arg(long, conflicts_with = "gamma")]
+    family: bool,
+    /// Write the tables of the family as a file of bytes, which a program reads, not as text.
+    #[arg(long, requires = "family")]
+    binary: bool,
+    /// Leave out directional albedos, which compensation of multiple scattering needs: about half
+    /// of the text.
+    #[arg(long)]
+    no_albedo: bool,
+    #[command(flatten)]
+    ends: Ends,
+}
+
 /// Shapes for shaders.
 #[derive(clap::Args)]
 pub(super) struct ShaderArgs {
+    /// Shape in [1.501, inf]; 2 is GGX, inf is Beckmann. Several are separated by commas, or in
+    /// options of their own.
+    #[arg(long, value_name = "G", required = true, value_delimiter = ',', value_parser = values::gamma)]
+    gamma: Vec<f64>,
     #[command(flatten)]
-    shapes: Args,
+    ends: Ends,
     /// Have a shader read its tables from a texture, not from a buffer. GLSL ES has no other way.
     #[arg(long)]
     textures: bool,
@@ -39,13 +67,40 @@ const PROMISED_ROWS: usize = 2048;
 
 pub(super) fn shader(language: Language, args: &ShaderArgs) -> Result<()> {
     let storage = if args.textures { Storage::Texture } else { Storage::Buffer };
-    run(Target::Shader(language, storage), &args.shapes)
+    let shapes = bind(&args.gamma, &args.ends)?;
+    if language.storage(storage) == Storage::Texture
+        && let rows = texture_rows(&shapes)
+        && rows > PROMISED_ROWS
+    {
+        note(format!(
+            "the texture has {rows} rows; all devices of WebGL 2 take {PROMISED_ROWS}: export fewer \
+             shapes in one command for others"
+        ));
+    }
+    write(&args.ends, &files(Target::Shader(language, storage), &shapes))
 }
 
-pub(super) fn run(target: Target, args: &Args) -> Result<()> {
-    values::tabulated(&args.gamma, "")?;
-    let set = tables(args.tables.as_deref())?;
-    let gammas = distinct(args.gamma.iter().copied());
+pub(super) fn c(args: &CArgs) -> Result<()> {
+    if args.family {
+        let family = Family::bind(&tables(args.ends.tables.as_deref())?, !args.no_albedo)?;
+        return write(&args.ends, &family_files(&family, args.binary));
+    }
+    let mut shapes = bind(&args.gamma, &args.ends)?;
+    if args.no_albedo {
+        shapes.iter_mut().for_each(Shape::leave_out_albedos);
+    }
+    write(&args.ends, &files(Target::C, &shapes))
+}
+
+fn write(ends: &Ends, files: &[ExportFile]) -> Result<()> {
+    super::write(&OutputFolder::open(&ends.out)?, files)
+}
+
+/// The shapes of an export.
+fn bind(gammas: &[f64], ends: &Ends) -> Result<Vec<Shape>> {
+    values::tabulated(gammas, "")?;
+    let set = tables(ends.tables.as_deref())?;
+    let gammas = distinct(gammas.iter().copied());
     let shapes: Vec<Shape> =
         gammas.into_iter().map(|gamma| Shape::bind(&set, gamma)).collect::<Result<_, _>>()?;
     for shape in &shapes {
@@ -57,15 +112,5 @@ pub(super) fn run(target: Target, args: &Args) -> Result<()> {
             ));
         }
     }
-    if let Target::Shader(language, storage) = target
-        && language.storage(storage) == Storage::Texture
-        && let rows = texture_rows(&shapes)
-        && rows > PROMISED_ROWS
-    {
-        note(format!(
-            "the texture has {rows} rows; all devices of WebGL 2 take {PROMISED_ROWS}: export fewer \
-             shapes in one command for others"
-        ));
-    }
-    super::write(&OutputFolder::open(&args.out)?, &files(target, &shapes))
+    Ok(shapes)
 }

@@ -2,8 +2,9 @@
 //! corners, and with the rows of `docs/reference.csv`; then times both in turns.
 //!
 //! `clients/c/run` exports the shapes and starts this program with the number of random points and
-//! the path of the rows as arguments. Exit status 1 if something differs by more than is allowed.
+//! the paths of the rows and of a family's file as arguments. Exit status 1 if something differs by more than is allowed.
 
+mod families;
 mod foreign;
 mod timing;
 
@@ -27,13 +28,14 @@ const LIMITS: Limits = Limits {
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [count, reference] = &arguments[..] else {
-        eprintln!("usage: student-t-in-c POINTS REFERENCE.csv");
+    let [count, reference, family] = &arguments[..] else {
+        eprintln!("usage: student-t-in-c POINTS REFERENCE.csv FAMILY.bin");
         return ExitCode::from(2);
     };
     let count: usize = count.parse().expect("a number of points");
     let (tables, gammas) = (Tables::embedded(), foreign::gammas());
     let good = agree(&mut foreign::Compiled, &LIMITS, &gammas, count, reference);
+    let good = families::agree(count, family) & good;
     println!("times in relation to the crate's, sigma 0.5");
     for gamma in [3.0, 1.65, 2.0] {
         if let Some(shape) = gammas.iter().position(|&g| g == gamma) {

@@ -4,12 +4,12 @@
 /* Weights of the polynomial through six of n even nodes about x; returns the first of them. */
 STUDENT_T_FUNCTION int student_t_impl_six(float x, int n, float weights[6])
 {
-    const float at = student_t_impl_min(student_t_impl_max(x, 0.0f), (float)(n - 1));
-    int start = (int)at - 2;
+    const float at = student_t_impl_min(student_t_impl_max(x, 0.0f), STUDENT_T_IMPL_CAST(float, n - 1));
+    int start = STUDENT_T_IMPL_CAST(int, at) - 2;
     float a, b, c, d, e, f;
     start = start < n - 6 ? start : n - 6;
     start = start > 0 ? start : 0;
-    a = at - (float)start;
+    a = at - STUDENT_T_IMPL_CAST(float, start);
     b = a - 1.0f;
     c = a - 2.0f;
     d = a - 3.0f;
@@ -24,33 +24,137 @@ STUDENT_T_FUNCTION int student_t_impl_six(float x, int n, float weights[6])
     return start;
 }
 
-/* One roughness of a table of albedos. */
+/* The albedos of a lobe, or of its round stand-in. */
 typedef struct student_t_impl_albedo {
-    const student_t_albedo_table *table;
     enum student_t_masking masking;
-    float sigma, coordinate; /* sigma = 0: a mirror; coordinate in [0, 1] */
+    float sigma;             /* 0: a mirror */
+    float less;              /* 2 gamma - 3 */
+    /* Of a shape: */
+    const student_t_albedo_table *table;
+    float coordinate;        /* in [0, 1] */
     float floor;             /* cosine of the first view */
     int start;               /* of the six nodes along sigma */
     float weights[6];
+    /* Of a family, where there is no table: */
+    const student_t_family *family;
+    const student_t_volume *volume;
+    int first[2];            /* of the three coefficients by shape and by sigma */
+    float by_shape[3], by_sigma[3];
 } student_t_impl_albedo;
+
+/* Near log2(x), with a polynomial of the mantissa; nodes are where the same polynomial puts them. */
+STUDENT_T_FUNCTION float student_t_impl_octaves(float x)
+{
+    const int bits = student_t_impl_bits(x);
+    const float m = student_t_impl_of_bits((bits & 0x7fffff) | 0x3f800000) - 1.0f;
+    return STUDENT_T_IMPL_CAST(float, (bits >> 23) - 127) +
+           m * (m * (m - 4.0f) + 10.0f) * (1.0f / 7.0f);
+}
+
+/* The first of three coefficients at x >= 0, a place among nodes, and their weights. */
+STUDENT_T_FUNCTION int student_t_impl_three(float x, float weights[3])
+{
+    const int start = STUDENT_T_IMPL_CAST(int, student_t_impl_max(x, 0.0f) + 0.5f);
+    const float d = x - STUDENT_T_IMPL_CAST(float, start), half = 0.5f * d;
+    const float ends = half * d + 0.125f;
+    weights[0] = ends - half;
+    weights[1] = 1.0f - (ends + ends);
+    weights[2] = ends + half;
+    return start;
+}
 
 STUDENT_T_FUNCTION student_t_impl_albedo
 student_t_impl_albedo_of(const student_t_lobe *lobe, enum student_t_masking masking)
 {
     student_t_impl_albedo a;
-    const student_t_albedo_table *t =
-        &lobe->shape->albedo[masking == STUDENT_T_UNCORRELATED ? 0 : 1];
+    const int form = masking == STUDENT_T_UNCORRELATED ? 0 : 1;
     const float stand_in = sqrtf(lobe->sigma_x * lobe->sigma_y);
-    a.table = t;
     a.masking = masking;
-    a.sigma = student_t_impl_min(student_t_impl_max(stand_in, t->sigma_min), t->sigma_max);
-    a.floor = t->floor * (t->slope * a.sigma) / (t->floor + t->slope * a.sigma);
-    a.coordinate = log1pf(a.sigma / t->offset) + t->slow * logf(a.sigma / t->first) +
-                   t->linear * a.sigma;
-    a.coordinate = (a.coordinate - t->start) / t->range;
-    a.start = student_t_impl_six(a.coordinate * (float)(t->sigmas - 1), t->sigmas, a.weights);
+    a.less = student_t_impl_min(2.0f * lobe->gamma - 3.0f, 1e30f);
+    if (lobe->family) {
+        const student_t_volume *t = &lobe->family->albedo[form];
+        const float s = student_t_impl_min(student_t_impl_max(stand_in, t->sigmas[0]), t->sigmas[1]);
+        const float d = student_t_impl_min(student_t_impl_max(a.less, t->shapes[0]), t->shapes[1]);
+        const float octaves = student_t_impl_octaves(s);
+        const float shape = sqrtf(sqrtf(d / (d + 3.0f)));
+        const float sigma = student_t_impl_octaves(1.0f + 60.0f * s) + 0.2f * octaves + s;
+        a.table = STUDENT_T_IMPL_NULL;
+        a.family = lobe->family;
+        a.volume = t;
+        a.less = d;
+        a.sigma = s;
+        a.coordinate = (octaves + 2.0f * s - t->averages_first) * t->averages_density;
+        a.first[0] = student_t_impl_three((shape - t->first[0]) * t->density[0], a.by_shape);
+        a.first[1] = student_t_impl_three((sigma - t->first[1]) * t->density[1], a.by_sigma);
+        if (t->codes[0] == 0u) a.sigma = 0.0f; /* without albedos nothing is lost */
+    } else {
+        const student_t_albedo_table *t = &lobe->shape->albedo[form];
+        a.table = t;
+        a.sigma = student_t_impl_min(student_t_impl_max(stand_in, t->sigma_min), t->sigma_max);
+        a.floor = t->floor * (t->slope * a.sigma) / (t->floor + t->slope * a.sigma);
+        a.coordinate = log1pf(a.sigma / t->offset) + t->slow * logf(a.sigma / t->first) +
+                       t->linear * a.sigma;
+        a.coordinate = (a.coordinate - t->start) / t->range;
+        a.start = student_t_impl_six(
+            a.coordinate * STUDENT_T_IMPL_CAST(float, t->sigmas - 1), t->sigmas, a.weights);
+        if (!t->values) a.sigma = 0.0f; /* without albedos nothing is lost */
+    }
     if (lobe->is_mirror) a.sigma = 0.0f;
     return a;
+}
+
+/* Within about how much of the horizon light is lost, as a cosine. */
+STUDENT_T_FUNCTION float student_t_impl_reach(const student_t_impl_albedo *a)
+{
+    return a->sigma * (1.0f + 1.0f / (6.0f * a->less));
+}
+
+/* The cell of a view in a volume, in which four coefficients begin, and their weights. */
+STUDENT_T_FUNCTION int
+student_t_impl_view_of_volume(const student_t_impl_albedo *a, float mu, float weights[4])
+{
+    const float d = a->less, sine = sqrtf((1.0f - mu) * (1.0f + mu));
+    const float x = d * mu / (d * mu + (6.0f * a->sigma * d + a->sigma) * sine);
+    const float h = mu / (1.0f + sine);
+    const float at = 14.3f * sqrtf(sqrtf(x)) + 11.7f * sqrtf(sqrtf(h)); /* of 26 cells */
+    const int cell = STUDENT_T_IMPL_CAST(int, at);
+    const float t = at - STUDENT_T_IMPL_CAST(float, cell), rest = 1.0f - t;
+    weights[0] = rest * rest * rest * (1.0f / 6.0f);
+    weights[1] = 2.0f / 3.0f - t * t * (1.0f - 0.5f * t);
+    weights[2] = 2.0f / 3.0f - rest * rest * (1.0f - 0.5f * rest);
+    weights[3] = t * t * t * (1.0f / 6.0f);
+    return cell;
+}
+
+/* A channel of a volume at a view. */
+STUDENT_T_FUNCTION float student_t_impl_channel(const student_t_impl_albedo *a, int channel,
+                                                int cell, const float weights[4])
+{
+    const student_t_volume *t = a->volume;
+    const unsigned short *codes =
+        student_t_impl_codes(a->family, t->codes[channel]) +
+        (a->first[1] * STUDENT_T_VOLUME_SHAPES + a->first[0]) * STUDENT_T_VOLUME_VIEWS + cell;
+    float sum[4] = {0.0f, 0.0f, 0.0f, 0.0f};
+    int i, j, k;
+    for (i = 0; i < 3; ++i) {
+        for (j = 0; j < 3; ++j) {
+            const unsigned short *four =
+                codes + (i * STUDENT_T_VOLUME_SHAPES + j) * STUDENT_T_VOLUME_VIEWS;
+            const float w = a->by_sigma[i] * a->by_shape[j];
+            for (k = 0; k < 4; ++k) sum[k] += w * STUDENT_T_IMPL_CAST(float, four[k]);
+        }
+    }
+    return t->start[channel] +
+           t->step[channel] * ((sum[0] * weights[0] + sum[1] * weights[1]) +
+                               (sum[2] * weights[2] + sum[3] * weights[3]));
+}
+
+/* The share lost, of a volume. */
+STUDENT_T_FUNCTION float
+student_t_impl_lost_of_volume(const student_t_impl_albedo *a, int cell, const float weights[4])
+{
+    const float root = student_t_impl_channel(a, 0, cell, weights);
+    return student_t_impl_min(root * root, 1.0f);
 }
 
 /* The coordinate of a view by its cosine mu, before it is stretched to [0, 1]. */
@@ -81,7 +185,7 @@ STUDENT_T_FUNCTION void student_t_impl_moments_at(const student_t_impl_albedo *a
     const float start = student_t_impl_view(a, a->floor);
     const float at = (student_t_impl_view(a, mu) - start) / (1.0f - start);
     float weights[6], sum[3] = {0.0f, 0.0f, 0.0f}, e, mirror_bias, mirror_f82;
-    const int first = student_t_impl_six(at * (float)(t->views - 1), t->views, weights);
+    const int first = student_t_impl_six(at * STUDENT_T_IMPL_CAST(float, t->views - 1), t->views, weights);
     /* Weights sum to 1: differences from a node in the middle have less to round than values. */
     const float *middle = t->values + 3 * ((a->start + 2) * t->views + first + 2);
     int i, j, k;
@@ -106,6 +210,16 @@ STUDENT_T_FUNCTION void student_t_impl_moments(const student_t_impl_albedo *a, f
 {
     const float mu = student_t_impl_unit(cos_theta);
     moments[0] = 0.0f;
+    if (a->sigma > 0.0f && !a->table) {
+        float weights[4], bias, f82, e;
+        const int cell = student_t_impl_view_of_volume(a, mu, weights);
+        e = 1.0f - student_t_impl_lost_of_volume(a, cell, weights);
+        student_t_impl_mirror(mu, &bias, &f82);
+        moments[0] = e - 1.0f;
+        moments[1] = student_t_impl_channel(a, 1, cell, weights) + e * bias;
+        moments[2] = student_t_impl_channel(a, 2, cell, weights) + e * f82;
+        return;
+    }
     if (a->sigma > 0.0f)
         student_t_impl_moments_at(a, student_t_impl_max(mu, a->floor), moments);
     if (!(a->sigma > 0.0f) || (mu < a->floor && !(moments[0] < 0.0f))) {
@@ -132,6 +246,12 @@ STUDENT_T_FUNCTION void student_t_impl_moments(const student_t_impl_albedo *a, f
 STUDENT_T_FUNCTION float student_t_impl_lost(const student_t_impl_albedo *a, float cos_theta)
 {
     float moments[3];
+    if (a->sigma > 0.0f && !a->table) {
+        float weights[4];
+        const int cell =
+            student_t_impl_view_of_volume(a, student_t_impl_unit(cos_theta), weights);
+        return student_t_impl_lost_of_volume(a, cell, weights);
+    }
     student_t_impl_moments(a, cos_theta, moments);
     return -moments[0];
 }
@@ -147,7 +267,28 @@ STUDENT_T_FUNCTION void student_t_impl_averages(const student_t_impl_albedo *a, 
     averages[1] = 1.0f / 21.0f;
     averages[2] = 0.14009036f; /* 117649/839808 */
     if (!(a->sigma > 0.0f)) return;
-    i = student_t_impl_six(a->coordinate * (float)(t->average_sigmas - 1), t->average_sigmas,
+    if (!t) {
+        const student_t_volume *volume = a->volume;
+        float sum[3], by_sigma[3], e;
+        const int first = student_t_impl_three(a->coordinate, by_sigma);
+        int j, k;
+        for (k = 0; k < 3; ++k) {
+            const unsigned short *codes = student_t_impl_codes(a->family, volume->codes[3 + k]) +
+                                          first * STUDENT_T_VOLUME_SHAPES + a->first[0];
+            sum[k] = 0.0f;
+            for (i = 0; i < 3; ++i, codes += STUDENT_T_VOLUME_SHAPES)
+                for (j = 0; j < 3; ++j)
+                    sum[k] += by_sigma[i] * a->by_shape[j] * STUDENT_T_IMPL_CAST(float, codes[j]);
+            sum[k] = volume->start[3 + k] + volume->step[3 + k] * sum[k];
+        }
+        if (sum[0] < -120.0f) return; /* next to nothing is lost */
+        e = 1.0f - student_t_impl_min(exp2f(sum[0]), 1.0f);
+        averages[0] = sum[0] * 0.69314718f;
+        averages[1] = sum[1] + e * averages[1];
+        averages[2] = sum[2] + e * averages[2];
+        return;
+    }
+    i = student_t_impl_six(a->coordinate * STUDENT_T_IMPL_CAST(float, t->average_sigmas - 1), t->average_sigmas,
                            weights);
     node = t->averages + 3 * i;
     averages[0] = averages[1] = averages[2] = 0.0f;

@@ -1,4 +1,4 @@
-/* SPDX-License-Identifier: CC0-1.0
+/* SPDX-License-Identifier: CC0-1.0 OR MIT
  *
  * student_t.h: microfacet lobes of the Student-t family, for C99, C++11, CUDA and HIP.
  *
@@ -82,6 +82,7 @@
 
 #if !defined(__CUDACC_RTC__) && !defined(__HIPCC_RTC__)
 #include <math.h>
+#include <string.h>
 #endif
 
 /* Qualifiers of functions and of tables; define them beforehand to have others. */
@@ -168,8 +169,70 @@ typedef struct student_t_shape {
     student_t_albedo_table albedo[2]; /* by student_t_masking */
 } student_t_shape;
 
+/* One of the two ranges of gamma of a family. Tables are at offsets, in bytes from the family; a
+ * place of them has the values of all nodes of gamma side by side. */
+typedef struct student_t_part {
+    float gamma_min, gamma_max;
+    float kappa;             /* that of masking, times (2 gamma - 3)/(gamma - 1) */
+    student_t_constants constants;
+    float first, scale;      /* r = 2 - s at the first of the slots, and slots in a unit of r */
+    int slot_count, last;    /* last: the cell of what is beyond the slots */
+    unsigned slots;          /* codes [slot_count]: the cell of each */
+    unsigned cells;          /* student_t_impl_between [] */
+    int shapes[3];           /* nodes of gamma: of slopes, of slopes across, of masking */
+    unsigned slopes;         /* codes [rows + 2][2][numbers][shapes][2], and a node, as in a shape */
+    unsigned columns;        /* [2][numbers][4], and one more: start and step of values, of slopes */
+    unsigned across;         /* [cells + 2][shapes][2]: value and slope */
+    unsigned masking[2];     /* codes of the same, of G1/coordinate/cells, and [cells + 2][2][2]:
+                              * their starts and steps */
+    unsigned rests[3];       /* codes [cells + 1][shapes][4]: cubics, of the visible area in tables,
+                              * over that of a unit of rho in no table, with gamma as of masking;
+                              * starts and steps; and [shapes]: factors */
+    unsigned rhos;           /* [cells + 1][4]: cubics, of rho of the same views */
+} student_t_part;
+
+/* Coefficients along gamma and along the view of a family's albedos. */
+#define STUDENT_T_VOLUME_SHAPES 37
+#define STUDENT_T_VOLUME_VIEWS 29
+
+/* Albedos of a family under one form of masking: coefficients of splines over (sigma, gamma, view),
+ * quadratic, quadratic and cubic. */
+typedef struct student_t_volume {
+    float shapes[2], sigmas[2];     /* the ends of 2 gamma - 3 and of sigma */
+    float first[2], density[2];     /* by shape and by sigma: coordinate of the first node, and nodes
+                                     * in a unit */
+    float averages_first, averages_density;
+    float start[6], step[6];        /* of codes */
+    unsigned codes[6];              /* [][37][29]: of sqrt(1 - E), and of bias and F82 less E times
+                                     * those of a mirror; [][37]: of log2(1 - E_avg), and of averages
+                                     * of the other two; 0 where a family has no albedos */
+} student_t_volume;
+
+/* All shapes from gamma = 1.501 to infinity: one block of memory without pointers, of `bytes` bytes,
+ * which may be copied anywhere, as to a GPU. */
+typedef struct student_t_family {
+    unsigned magic, layout, bytes;
+    float seam;                     /* smaller gamma are those of the last part */
+    int parts;
+    student_t_part part[2];
+    student_t_volume albedo[2];     /* by student_t_masking */
+} student_t_family;
+
+/* The weights of four nodes of gamma between two places, as cubics of the position; by table. */
+typedef struct student_t_impl_between {
+    float from, inverse;            /* the position is inverse (from - r) */
+    int starts[3];
+    float weights[3][4][4];         /* by power of the position, by node */
+} student_t_impl_between;
+
+typedef struct student_t_impl_window {
+    int start;
+    float weights[4];
+} student_t_impl_window;
+
 /* The lobe of one gamma and roughness: what a renderer makes at a hit, and hands to the functions
- * below. Only the first three members are for users. */
+ * below. Of its members gamma, sigma_x and
+ * sigma_y are for users, to read. */
 typedef struct student_t_lobe {
     float sigma_x;           /* in [1e-8, 1e6] */
     float gamma;             /* the largest finite number for infinity */
@@ -179,6 +242,9 @@ typedef struct student_t_lobe {
     int is_ggx;              /* closed forms */
     student_t_law law;
     const student_t_constants *constants;
-    const student_t_shape *shape;
+    const student_t_shape *shape;   /* its tables, or those of a family: */
+    const student_t_family *family;
+    const student_t_part *part;
+    student_t_impl_window slopes, across, masking;
 } student_t_lobe;
 

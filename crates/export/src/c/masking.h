@@ -8,48 +8,48 @@ typedef struct student_t_impl_direction {
     float rho2;        /* the square of rho, before the root */
 } student_t_impl_direction;
 
-STUDENT_T_FUNCTION student_t_impl_direction
-student_t_impl_stretch(const student_t_lobe *lobe, const float w[3])
+/* By pointers, here and below: a small struct by value would be written member by member, and read
+ * back at once, which waits for all of them. */
+STUDENT_T_FUNCTION void student_t_impl_stretch(const student_t_lobe *lobe, const float w[3],
+                                               student_t_impl_direction *d)
 {
-    student_t_impl_direction d;
-    d.x = lobe->sigma_x * w[0];
-    d.y = lobe->sigma_y * w[1];
-    d.rho2 = d.x * d.x + d.y * d.y;
-    d.rho = sqrtf(d.rho2);
-    d.z = student_t_impl_unit(w[2]);
-    d.frame = d.rho;
-    if (!(d.rho >= 1e-6f)) { /* else squares of normals would leave single precision */
-        if (d.rho >= 1e-18f) { /* whose own square is still in it */
-            d.x /= d.rho;
-            d.y /= d.rho;
+    d->x = lobe->sigma_x * w[0];
+    d->y = lobe->sigma_y * w[1];
+    d->rho2 = d->x * d->x + d->y * d->y;
+    d->rho = sqrtf(d->rho2);
+    d->z = student_t_impl_unit(w[2]);
+    d->frame = d->rho;
+    if (!(d->rho >= 1e-6f)) { /* else squares of normals would leave single precision */
+        if (d->rho >= 1e-18f) { /* whose own square is still in it */
+            d->x /= d->rho;
+            d->y /= d->rho;
         } else { /* upright; straight down, null or NaN: at the horizon */
-            d.x = 1.0f;
-            d.y = 0.0f;
-            d.z = d.z > 0.0f ? 1.0f : 0.0f; /* else the square of a small one would vanish */
-            d.rho2 = d.rho = 1.0f - d.z;
+            d->x = 1.0f;
+            d->y = 0.0f;
+            d->z = d->z > 0.0f ? 1.0f : 0.0f; /* else the square of a small one would vanish */
+            d->rho2 = d->rho = 1.0f - d->z;
         }
-        d.frame = 1.0f;
+        d->frame = 1.0f;
     }
-    return d;
 }
 
 /* 1/(area of the microsurface seen from a direction) = G1/z, finite at grazing. */
 STUDENT_T_FUNCTION float
-student_t_impl_inverse_area(const student_t_lobe *lobe, student_t_impl_direction d)
+student_t_impl_inverse_area(const student_t_lobe *lobe, const student_t_impl_direction *d)
 {
     const student_t_constants *c = lobe->constants;
     if (lobe->is_ggx) {
-        const float length = sqrtf(d.rho2 + d.z * d.z);
-        return 2.0f / student_t_impl_max(d.z + length, STUDENT_T_SMALLEST);
+        const float length = sqrtf(d->rho2 + d->z * d->z);
+        return 2.0f / student_t_impl_max(d->z + length, STUDENT_T_SMALLEST);
     } else {
-        const float cells = c->masking_cells, across = lobe->law.kappa * d.rho;
-        const float area = student_t_impl_max(d.z + across, 1e-30f); /* less than any has */
+        const float cells = c->masking_cells, across = lobe->law.kappa * d->rho;
+        const float area = student_t_impl_max(d->z + across, 1e-30f); /* less than any has */
         const float r = cells / area;
-        float at = d.z * r, w;
+        float at = d->z * r, w;
         int cell;
         if (c->masking_crowded) at = (1.0f - sqrtf(student_t_impl_unit(across / area))) * cells;
         cell = student_t_impl_cell(at, &w);
-        return student_t_impl_cubic(lobe->shape->masking + 4 * cell, w) * r;
+        return student_t_impl_masking_at(lobe, cell, w) * r;
     }
 }
 
@@ -82,15 +82,11 @@ student_t_impl_d(const student_t_lobe *lobe, const float m[3], float length2)
     const float x = m[0] / lobe->sigma_x, y = m[1] / lobe->sigma_y, z = m[2];
     const float scale = 1.0f / (3.14159265f * lobe->sigma_x * lobe->sigma_y);
     const float z2 = z * z, part = lobe->law.d_s * (x * x + y * y);
-    const float b = student_t_impl_max(z2 + part, STUDENT_T_SMALLEST);
-    float root = length2 / b; /* of pi sigma_x sigma_y D = b^-gamma z^(2 gamma - 4), for length 1 */
+    /* Of pi sigma_x sigma_y D = b^-gamma z^(2 gamma - 4), for a normal of length 1. */
+    float root = length2 / student_t_impl_max(z2 + part, STUDENT_T_SMALLEST);
     if (!(z > 0.0f && part >= 0.0f)) return 0.0f;
-    if (!lobe->is_ggx) {
-        /* ln(b/z2), where z2 may underflow. */
-        const float growth =
-            part < 1e3f * z2 ? log1pf(part / z2) : logf(b) - 2.0f * logf(z);
-        root *= expf(lobe->law.d_power * growth);
-    }
+    if (!lobe->is_ggx)
+        root = student_t_impl_power_of_growth(z2, part, lobe->law.d_power, root);
     return student_t_impl_finite((scale * root) * root);
 }
 
@@ -103,8 +99,9 @@ STUDENT_T_FUNCTION float student_t_lobe_d(const student_t_lobe *lobe, const floa
 /* Smith's masking G1(w) in [0, 1]. */
 STUDENT_T_FUNCTION float student_t_lobe_g1(const student_t_lobe *lobe, const float w[3])
 {
-    const student_t_impl_direction d = student_t_impl_stretch(lobe, w);
-    return student_t_impl_min(d.z * student_t_impl_inverse_area(lobe, d), 1.0f);
+    student_t_impl_direction d;
+    student_t_impl_stretch(lobe, w, &d);
+    return student_t_impl_min(d.z * student_t_impl_inverse_area(lobe, &d), 1.0f);
 }
 
 /* Smith's lambda(w) = 1/G1 - 1, infinite at and below the horizon. Its absolute error is that of
@@ -160,9 +157,11 @@ student_t_impl_facet_of(const student_t_lobe *lobe, const float v[3], const floa
                         float length2, const float l[3], enum student_t_masking masking)
 {
     student_t_impl_facet facet;
-    const student_t_impl_direction d = student_t_impl_stretch(lobe, v);
-    const float inverse = student_t_impl_inverse_area(lobe, d);
-    const float a = student_t_impl_min(d.z * inverse, 1.0f);
+    student_t_impl_direction d;
+    float inverse, a;
+    student_t_impl_stretch(lobe, v, &d);
+    inverse = student_t_impl_inverse_area(lobe, &d);
+    a = student_t_impl_min(d.z * inverse, 1.0f);
     facet.density = student_t_impl_finite(student_t_impl_d(lobe, m, length2) * inverse);
     facet.weight = student_t_impl_weight(a, student_t_lobe_g1(lobe, l), masking);
     return facet;
@@ -198,9 +197,9 @@ STUDENT_T_FUNCTION int student_t_effectively_smooth(const student_t_lobe *lobe)
     student_t_impl_direction d = {0.0f, 0.0f, 1.0f, 1.0f, 0.0f, 1.0f};
     float mean;
     if (!(0.56f * sigma < 1e-3f)) return 0; /* no gamma has a smaller mean than 0.56 sigma */
-    mean = 2.0f / student_t_impl_inverse_area(lobe, d);
+    mean = 2.0f / student_t_impl_inverse_area(lobe, &d);
     d.z = 0.01f;
     d.rho = 0.99995f * sigma;
     d.rho2 = d.rho * d.rho;
-    return sigma * mean < 1e-3f && 1.0f - d.z * student_t_impl_inverse_area(lobe, d) <= 2.5e-3f;
+    return sigma * mean < 1e-3f && 1.0f - d.z * student_t_impl_inverse_area(lobe, &d) <= 2.5e-3f;
 }

@@ -1,16 +1,19 @@
 //! Headers for C99, C++11, CUDA and HIP.
 
+mod family;
+
 use std::fmt::Write;
 
 use super::members::{Member, Value};
 use super::numbers::{as_typed, error, identifier, lines, single};
-use super::{AlbedoTable, ExportFile, Shape};
+use super::{AlbedoTable, ExportFile, Family, Shape};
 
 /// The functions, which do not depend on a shape.
 const HEADER: &str = concat!(
     include_str!("head.h"),
     include_str!("numbers.h"),
     include_str!("lobe.h"),
+    include_str!("family.h"),
     include_str!("masking.h"),
     include_str!("normals.h"),
     include_str!("albedo.h"),
@@ -24,13 +27,35 @@ const HEADER_NAME: &str = "student_t.h";
 const LAYOUT: u32 = 3;
 
 pub(super) fn files(shapes: &[Shape]) -> Vec<ExportFile> {
-    let mut files = vec![ExportFile::new(HEADER_NAME, HEADER)];
+    let mut files = functions();
     for shape in shapes {
         let name = format!("student_t_gamma_{}", identifier(shape.gamma));
         let text = text(shape, &name);
         files.push(ExportFile::new(name + ".h", text));
     }
     files
+}
+
+/// The file of a family, and those of the functions.
+pub(super) fn family(family: &Family, binary: bool) -> Vec<ExportFile> {
+    let mut files = functions();
+    files.push(family::file(family, binary));
+    files
+}
+
+/// The files that do not depend on tables.
+fn functions() -> Vec<ExportFile> {
+    vec![ExportFile::new(HEADER_NAME, HEADER)]
+}
+
+/// The lines of a header that ask for the layout that it has.
+fn layout_check(name: &str) -> String {
+    format!(
+        "#if STUDENT_T_LAYOUT != {LAYOUT}
+#error \"{HEADER_NAME} is of another version than {name}.h: export both again\"
+#endif
+"
+    )
 }
 
 fn text(shape: &Shape, name: &str) -> String {
@@ -43,10 +68,8 @@ fn text(shape: &Shape, name: &str) -> String {
 
 #include \"{HEADER_NAME}\"
 
-#if STUDENT_T_LAYOUT != {LAYOUT}
-#error \"{HEADER_NAME} is of another version than {name}.h: export both again\"
-#endif
-"
+{}",
+        layout_check(name)
     )
     .expect("memory");
     for part in shape.parts() {
@@ -82,7 +105,7 @@ fn comment(shape: &Shape, name: &str) -> String {
     };
     let [low, high] = shape.albedos[0].sigma.map(|sigma| single(sigma as f32));
     format!(
-        "/* SPDX-License-Identifier: CC0-1.0
+        "/* SPDX-License-Identifier: CC0-1.0 OR MIT
  *
  * {name}.h: the Student-t lobe of gamma = {gamma} for any roughness.
  * {HEADER_NAME} has the functions and says how to use them.
@@ -160,7 +183,7 @@ fn literal(value: Value, name: &str) -> String {
         Value::Flag(flag) => u8::from(flag).to_string(),
         Value::Count(count) => count.to_string(),
         Value::Number(number) => float(number),
-        Value::Table(part) => part.map_or("0".into(), |part| format!("{name}_{part}")),
+        Value::Table(part) => part.map_or("STUDENT_T_IMPL_NULL".into(), |part| format!("{name}_{part}")),
     }
 }
 

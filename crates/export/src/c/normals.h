@@ -54,7 +54,7 @@ STUDENT_T_FUNCTION float student_t_impl_end(float u)
 }
 
 /* -1 if so, else 1: no branch, which no processor could predict of a random number. */
-STUDENT_T_FUNCTION float student_t_impl_sign(int negative) { return (float)(1 - 2 * negative); }
+STUDENT_T_FUNCTION float student_t_impl_sign(int negative) { return STUDENT_T_IMPL_CAST(float, 1 - 2 * negative); }
 
 /* A visible normal by inverting the distributions of two slopes, which are independent: x : z in
  * the plane of incidence and t : tz across it, in units of sqrt(z z + s x x). Tables hold the
@@ -74,13 +74,13 @@ STUDENT_T_FUNCTION void student_t_impl_sample_tables(const student_t_lobe *lobe,
         const float root = sqrtf(sqrtf(student_t_impl_end(u[1])));
         float w, g;
         const int cell = student_t_impl_cell(root * c->across_scale, &w);
-        g = student_t_impl_cubic(lobe->shape->across + 4 * cell, w);
+        g = student_t_impl_across_at(lobe, cell, w);
         t = (g - 1.0f) * student_t_impl_sign(u[1] > 0.5f);
         tz = g * (2.0f - g);
     }
 
     /* The view, among the rows of the table, and the g of its silhouette in the first half. */
-    d = student_t_impl_stretch(lobe, v);
+    student_t_impl_stretch(lobe, v, &d);
     length = sqrtf(d.rho2 + d.z * d.z);
     {
         const float steep = length + d.z;
@@ -95,10 +95,8 @@ STUDENT_T_FUNCTION void student_t_impl_sample_tables(const student_t_lobe *lobe,
 
     /* The first number chooses between the tables and what is in none, which comes last. */
     if (c->heavy_per_row > 0.0f) {
-        float w, share, rest;
-        const int cell = student_t_impl_cell(at * c->heavy_per_row, &w);
-        share = student_t_impl_cubic(lobe->shape->heavy + 4 * cell, w);
-        rest = 1.0f - share;
+        float rest;
+        const float share = student_t_impl_share_at(lobe, at, &rest);
         along = student_t_impl_unit(along);
         is_heavy = along > rest;
         number = is_heavy ? student_t_impl_min((1.0f - along) / share, 1.0f) : 1.0f;
@@ -119,21 +117,10 @@ STUDENT_T_FUNCTION void student_t_impl_sample_tables(const student_t_lobe *lobe,
     } else {
         const int half = along > 0.5f;
         const float root = sqrtf(sqrtf(student_t_impl_end(along)));
-        const float *low, *high;
-        float w, between, g, b0, b1, b2, b3;
+        float w, between, g;
         const int cell = student_t_impl_cell(root * c->along_scale, &w);
         const int row = student_t_impl_cell(at, &between);
-        low = lobe->shape->slopes + 2 * ((2 * row + half) * c->numbers + cell);
-        high = low + 4 * c->numbers;
-        /* Linear between the views, a cubic through values and slopes along the number. */
-        b0 = 1.0f + w * (w * (w * 2.0f - 3.0f));
-        b1 = w * (1.0f + w * (w - 2.0f));
-        b2 = w * (w * (3.0f - w * 2.0f));
-        b3 = w * (w * (w - 1.0f));
-        g = ((low[0] + between * (high[0] - low[0])) * b0 +
-             (low[2] + between * (high[2] - low[2])) * b2) +
-            ((low[1] + between * (high[1] - low[1])) * b1 +
-             (low[3] + between * (high[3] - low[3])) * b3);
+        g = student_t_impl_along_at(lobe, row, half, cell, between, w);
         x = g - 1.0f;
         z = g * (2.0f - g);
         sign = student_t_impl_sign(half);
@@ -172,11 +159,11 @@ STUDENT_T_FUNCTION void student_t_lobe_sample_visible_normal(const student_t_lob
 STUDENT_T_FUNCTION float student_t_lobe_visible_normal_pdf(const student_t_lobe *lobe, const float v[3],
                                                       const float m[3])
 {
-    const student_t_impl_direction d =
-        student_t_impl_stretch(lobe, v);
+    student_t_impl_direction d;
     const float facing = student_t_impl_max(v[0] * m[0] + v[1] * m[1] + v[2] * m[2], 0.0f);
     const float density = facing * student_t_lobe_d(lobe, m);
-    return student_t_impl_finite(density * student_t_impl_inverse_area(lobe, d));
+    student_t_impl_stretch(lobe, v, &d);
+    return student_t_impl_finite(density * student_t_impl_inverse_area(lobe, &d));
 }
 
 /* The light l = 2 (v.m) m - v that v is reflected to. */
@@ -193,10 +180,10 @@ STUDENT_T_FUNCTION void student_t_reflect(const float v[3], const float m[3], fl
 STUDENT_T_FUNCTION float student_t_lobe_reflection_pdf(const student_t_lobe *lobe, const float v[3],
                                                   const float m[3])
 {
-    const student_t_impl_direction d =
-        student_t_impl_stretch(lobe, v);
+    student_t_impl_direction d;
     if (!(v[0] * m[0] + v[1] * m[1] + v[2] * m[2] > 0.0f)) return 0.0f;
+    student_t_impl_stretch(lobe, v, &d);
     return student_t_impl_finite(0.25f * student_t_lobe_d(lobe, m) *
-                                 student_t_impl_inverse_area(lobe, d));
+                                 student_t_impl_inverse_area(lobe, &d));
 }
 

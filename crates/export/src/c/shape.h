@@ -5,21 +5,24 @@
 STUDENT_T_FUNCTION float
 student_t_d(const student_t_shape *shape, const float sigma[2], const float m[3])
 {
-    const student_t_lobe lobe = student_t_lobe_of(shape, sigma[0], sigma[1]);
+    student_t_lobe lobe;
+    student_t_impl_make(&lobe, shape, sigma[0], sigma[1]);
     return student_t_lobe_d(&lobe, m);
 }
 
 STUDENT_T_FUNCTION float
 student_t_g1(const student_t_shape *shape, const float sigma[2], const float w[3])
 {
-    const student_t_lobe lobe = student_t_lobe_of(shape, sigma[0], sigma[1]);
+    student_t_lobe lobe;
+    student_t_impl_make(&lobe, shape, sigma[0], sigma[1]);
     return student_t_lobe_g1(&lobe, w);
 }
 
 STUDENT_T_FUNCTION float
 student_t_lambda(const student_t_shape *shape, const float sigma[2], const float w[3])
 {
-    const student_t_lobe lobe = student_t_lobe_of(shape, sigma[0], sigma[1]);
+    student_t_lobe lobe;
+    student_t_impl_make(&lobe, shape, sigma[0], sigma[1]);
     return student_t_lobe_lambda(&lobe, w);
 }
 
@@ -27,7 +30,8 @@ STUDENT_T_FUNCTION float student_t_g2(const student_t_shape *shape, const float 
                                       const float v[3], const float l[3],
                                       enum student_t_masking masking)
 {
-    const student_t_lobe lobe = student_t_lobe_of(shape, sigma[0], sigma[1]);
+    student_t_lobe lobe;
+    student_t_impl_make(&lobe, shape, sigma[0], sigma[1]);
     return student_t_lobe_g2(&lobe, v, l, masking);
 }
 
@@ -35,7 +39,8 @@ STUDENT_T_FUNCTION void student_t_sample_visible_normal(const student_t_shape *s
                                                         const float sigma[2], const float v[3],
                                                         const float u[2], float m[3])
 {
-    const student_t_lobe lobe = student_t_lobe_of(shape, sigma[0], sigma[1]);
+    student_t_lobe lobe;
+    student_t_impl_make(&lobe, shape, sigma[0], sigma[1]);
     student_t_lobe_sample_visible_normal(&lobe, v, u, m);
 }
 
@@ -43,7 +48,8 @@ STUDENT_T_FUNCTION float student_t_visible_normal_pdf(const student_t_shape *sha
                                                       const float sigma[2], const float v[3],
                                                       const float m[3])
 {
-    const student_t_lobe lobe = student_t_lobe_of(shape, sigma[0], sigma[1]);
+    student_t_lobe lobe;
+    student_t_impl_make(&lobe, shape, sigma[0], sigma[1]);
     return student_t_lobe_visible_normal_pdf(&lobe, v, m);
 }
 
@@ -51,7 +57,8 @@ STUDENT_T_FUNCTION float student_t_reflection_pdf(const student_t_shape *shape,
                                                   const float sigma[2], const float v[3],
                                                   const float m[3])
 {
-    const student_t_lobe lobe = student_t_lobe_of(shape, sigma[0], sigma[1]);
+    student_t_lobe lobe;
+    student_t_impl_make(&lobe, shape, sigma[0], sigma[1]);
     return student_t_lobe_reflection_pdf(&lobe, v, m);
 }
 
@@ -60,14 +67,16 @@ STUDENT_T_FUNCTION float student_t_reflection_weight(const student_t_shape *shap
                                                      const float l[3],
                                                      enum student_t_masking masking)
 {
-    const student_t_lobe lobe = student_t_lobe_of(shape, sigma[0], sigma[1]);
+    student_t_lobe lobe;
+    student_t_impl_make(&lobe, shape, sigma[0], sigma[1]);
     return student_t_lobe_reflection_weight(&lobe, v, l, masking);
 }
 
 STUDENT_T_FUNCTION float student_t_albedo(const student_t_shape *shape, const float sigma[2],
                                           float cos_theta, enum student_t_masking masking)
 {
-    const student_t_lobe lobe = student_t_lobe_of(shape, sigma[0], sigma[1]);
+    student_t_lobe lobe;
+    student_t_impl_make(&lobe, shape, sigma[0], sigma[1]);
     return student_t_lobe_albedo(&lobe, cos_theta, masking);
 }
 
@@ -75,7 +84,8 @@ STUDENT_T_FUNCTION void student_t_albedo_parts(const student_t_shape *shape, con
                                                float cos_theta, enum student_t_masking masking,
                                                float scale_bias_f82[3])
 {
-    const student_t_lobe lobe = student_t_lobe_of(shape, sigma[0], sigma[1]);
+    student_t_lobe lobe;
+    student_t_impl_make(&lobe, shape, sigma[0], sigma[1]);
     student_t_lobe_albedo_parts(&lobe, cos_theta, masking, scale_bias_f82);
 }
 
@@ -83,7 +93,8 @@ STUDENT_T_FUNCTION float student_t_albedo_average(const student_t_shape *shape,
                                                   const float sigma[2],
                                                   enum student_t_masking masking)
 {
-    const student_t_lobe lobe = student_t_lobe_of(shape, sigma[0], sigma[1]);
+    student_t_lobe lobe;
+    student_t_impl_make(&lobe, shape, sigma[0], sigma[1]);
     return student_t_lobe_albedo_average(&lobe, masking);
 }
 
@@ -92,7 +103,8 @@ STUDENT_T_FUNCTION void student_t_albedo_average_parts(const student_t_shape *sh
                                                        enum student_t_masking masking,
                                                        float scale_bias_f82[3])
 {
-    const student_t_lobe lobe = student_t_lobe_of(shape, sigma[0], sigma[1]);
+    student_t_lobe lobe;
+    student_t_impl_make(&lobe, shape, sigma[0], sigma[1]);
     student_t_lobe_albedo_average_parts(&lobe, masking, scale_bias_f82);
 }
 
@@ -100,6 +112,7 @@ STUDENT_T_FUNCTION float student_t_compensation(const student_t_shape *shape, co
                                                 const float v[3], const float l[3],
                                                 enum student_t_masking masking)
 {
-    const student_t_lobe lobe = student_t_lobe_of(shape, sigma[0], sigma[1]);
+    student_t_lobe lobe;
+    student_t_impl_make(&lobe, shape, sigma[0], sigma[1]);
     return student_t_lobe_compensation(&lobe, v, l, masking);
 }

@@ -14,7 +14,7 @@ mod common;
 mod curve;
 mod directional;
 mod elevation;
-mod family;
+pub(crate) mod family;
 mod find;
 mod interface;
 mod moments;

@@ -48,7 +48,7 @@ use crate::error::{BatchError, MaterialError, same_lengths};
 #[derive(Clone, Debug)]
 pub struct Family {
     /// By falling γ: that of whole distributions, then that of peeled ones; one may be missing.
-    parts: Vec<Part>,
+    pub(super) parts: Vec<Part>,
     /// Smaller γ are those of the last part.
     seam: f32,
 }

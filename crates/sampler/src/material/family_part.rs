@@ -27,25 +27,25 @@ const LARGEST: f64 = 1e18;
 pub(crate) struct Part {
     /// The smallest and the largest γ; the largest that lookups take, finite, is apart.
     pub(super) gammas: [f64; 2],
-    range: [f32; 2],
+    pub(super) range: [f32; 2],
     /// Of in-plane slopes, of slopes across and of G1.
-    windows: Windows<3>,
+    pub(super) windows: Windows<3>,
     /// In-plane slopes, as in [`Slices`].
-    slopes: Planes<Node>,
-    lines: Lines,
-    half: u32,
-    scales: [f32; 2],
+    pub(super) slopes: Planes<Node>,
+    pub(super) lines: Lines,
+    pub(super) half: u32,
+    pub(super) scales: [f32; 2],
     /// Slopes across, the half for u > ½.
-    across: Planes<Node>,
+    pub(super) across: Planes<Node>,
     /// G1/q over the number of cells.
-    masking: Planes<Node>,
-    masking_view: Rational,
-    masking_cells: f32,
+    pub(super) masking: Planes<Node>,
+    pub(super) masking_view: Rational,
+    pub(super) masking_cells: f32,
     /// The part of the area that is not heavy, over M₀, by cell of the view coordinate; empty for
     /// whole distributions. It is smooth in γ up to 3/2, as the share of the heavy part is not.
-    rests: Planes<Cell>,
+    pub(super) rests: Planes<Cell>,
     /// ρ of the same views, to which that of the heavy part is equal.
-    rhos: Vec<Cell>,
+    pub(super) rhos: Vec<Cell>,
 }
 
 impl Part {

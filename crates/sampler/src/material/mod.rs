@@ -20,6 +20,7 @@ mod distribution;
 mod ellipsoid;
 mod family;
 mod family_part;
+pub(crate) mod family_tables;
 mod ggx;
 mod heavy;
 mod horizon;

@@ -29,24 +29,24 @@ pub(super) struct Window {
 #[derive(Clone, Debug)]
 pub(super) struct Windows<const N: usize> {
     /// r at the least s, and slots in a unit of s.
-    first: f32,
-    scale: f32,
+    pub(super) first: f32,
+    pub(super) scale: f32,
     /// The cell at the middle of each slot. A slot that holds the end of a cell reads one of the
     /// two up to half a slot outside; there their polynomials still agree to rounding.
-    slots: Vec<u16>,
-    last: u16,
-    cells: Vec<Between<N>>,
+    pub(super) slots: Vec<u16>,
+    pub(super) last: u16,
+    pub(super) cells: Vec<Between<N>>,
 }
 
 /// Between two nodes, of any axis.
 #[derive(Clone, Copy, Debug)]
-struct Between<const N: usize> {
+pub(super) struct Between<const N: usize> {
     /// r at the node of the smaller s, and one over the width in s.
-    from: f32,
-    inverse: f32,
-    starts: [u32; N],
+    pub(super) from: f32,
+    pub(super) inverse: f32,
+    pub(super) starts: [u32; N],
     /// The weights' coefficients by axis, by power of the position.
-    weights: [[[f32; FOUR]; FOUR]; N],
+    pub(super) weights: [[[f32; FOUR]; FOUR]; N],
 }
 
 /// Cells of G1 next to γ = 3/2 are seven slots wide, others a hundred.
@@ -127,8 +127,8 @@ fn window(nodes: &[f64], from: f64, to: f64) -> (usize, [[f32; FOUR]; FOUR]) {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Planes<T> {
     /// Values at a place: γ, at least four.
-    shapes: usize,
-    values: Vec<T>,
+    pub(super) shapes: usize,
+    pub(super) values: Vec<T>,
 }
 
 impl<T: Copy + Default> Planes<T> {

@@ -13,7 +13,7 @@ pub(super) fn encode(made: &Made) -> String {
     let (texture, spec) = (&made.texture, &made.texture.spec);
     let name = &spec.name;
     let channels = spec.channels.len();
-    let mut text = String::from("/* SPDX-License-Identifier: CC0-1.0\n");
+    let mut text = String::from("/* SPDX-License-Identifier: CC0-1.0 OR MIT\n");
     let of = if spec.gamma.is_nan() {
         "several gamma".into()
     } else {

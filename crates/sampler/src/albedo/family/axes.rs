@@ -20,16 +20,16 @@ pub(super) const SIGMA: usize = 1;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Axes {
     /// 2γ−3 of the smallest γ and of the largest.
-    shapes: [f32; 2],
+    pub(super) shapes: [f32; 2],
     /// The smallest σ and the largest.
-    sigmas: [f32; 2],
+    pub(super) sigmas: [f32; 2],
     /// The coordinates of the first nodes, and nodes for each unit.
-    first: f32x4,
-    density: f32x4,
+    pub(super) first: f32x4,
+    pub(super) density: f32x4,
     /// Cells between nodes of roughnesses: 0 where all have one σ.
     cells: usize,
     /// The coordinate of the first roughness of averages, nodes for each unit, and cells.
-    averages: (f32, f32, usize),
+    pub(super) averages: (f32, f32, usize),
 }
 
 /// The first of three coefficients along each axis, and their weights, as lanes.

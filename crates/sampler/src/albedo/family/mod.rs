@@ -3,12 +3,13 @@
 //! a texture.
 //!
 //! `axes` has the coordinates, of which `octaves` is the logarithm, `spline` the polynomials
-//! between nodes, and `build` fills the volume.
+//! between nodes, and `build` fills the volume; `tables` is for exports.
 
 mod axes;
 mod build;
 mod octaves;
 mod spline;
+pub(crate) mod tables;
 
 use alloc::vec::Vec;
 
