@@ -12,7 +12,7 @@
 //!
 //! let shape = Shape::bind(&Tables::embedded(), 3.0)?;
 //! let names = files(Target::C, &[shape]).into_iter().map(|file| file.name);
-//! assert_eq!(names.collect::<Vec<_>>(), ["student_t.h", "student_t_gamma_3.h"]);
+//! assert_eq!(names.collect::<Vec<_>>(), ["student_t.h", "student_t_materials.h", "student_t_gamma_3.h"]);
 //! # Ok::<(), microfacet_sampler::MaterialError>(())
 //! ```
 

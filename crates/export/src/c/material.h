@@ -37,5 +37,3 @@ typedef struct student_t_sample {
     float pdf;        /* per steradian; 0 for a delta */
     float eta;        /* index on the side of l over that on the side of the view; 1 if reflected */
 } student_t_sample;
-
-#endif

@@ -20,11 +20,18 @@ const HEADER: &str = concat!(
 
 const HEADER_NAME: &str = "student_t.h";
 
+/// The materials of its lobes.
+const MATERIALS: &str =
+    concat!(include_str!("material.h"), include_str!("dielectric.h"), "\n#endif\n");
+
+const MATERIALS_NAME: &str = "student_t_materials.h";
+
 /// `STUDENT_T_LAYOUT` of the header.
 const LAYOUT: u32 = 3;
 
 pub(super) fn files(shapes: &[Shape]) -> Vec<ExportFile> {
-    let mut files = vec![ExportFile::new(HEADER_NAME, HEADER)];
+    let mut files =
+        vec![ExportFile::new(HEADER_NAME, HEADER), ExportFile::new(MATERIALS_NAME, MATERIALS)];
     for shape in shapes {
         let name = format!("student_t_gamma_{}", identifier(shape.gamma));
         let text = text(shape, &name);

@@ -1,0 +1,60 @@
+/* Dielectrics of exported shapes over arrays, compiled as C and as C++ under two prefixes. */
+#include <stddef.h>
+
+#include "student_t_materials.h"
+
+#include "shapes.h"
+
+#define JOIN_(a, b) a##b
+#define JOIN(a, b) JOIN_(a, b)
+#define NAME(name) JOIN(PREFIX, name)
+
+#ifdef __cplusplus
+#define EXPORT extern "C"
+#else
+#define EXPORT extern
+#endif
+
+/* As `Query` and `Found` in Rust. */
+typedef struct query {
+    float sigma[2], eta, v[3], l[3], choice, u[2];
+    int masking, transport;
+} query;
+
+typedef struct found {
+    int event, is_delta;
+    float l[3], m[3], weight[STUDENT_T_CHANNELS], pdf, eta;
+    float f[3][STUDENT_T_CHANNELS], density[3]; /* towards the light of the query, back from it to
+                                                 * its view, and towards the sampled light */
+} found;
+
+EXPORT void NAME(dielectric)(size_t shape, size_t count, const query *queries, found *all);
+
+static const student_t_shape *const shapes[] = SHAPES;
+
+EXPORT void NAME(dielectric)(size_t shape, size_t count, const query *queries, found *all)
+{
+    for (size_t i = 0; i < count; ++i) {
+        const query *q = &queries[i];
+        found *a = &all[i];
+        const student_t_lobe lobe = student_t_lobe_of(shapes[shape], q->sigma[0], q->sigma[1]);
+        const enum student_t_transport transport =
+            q->transport ? STUDENT_T_IMPORTANCE : STUDENT_T_RADIANCE;
+        const student_t_dielectric d = student_t_dielectric_at(
+            &lobe, q->eta, q->masking ? STUDENT_T_HEIGHT_CORRELATED : STUDENT_T_UNCORRELATED);
+        const student_t_sample s =
+            student_t_dielectric_sample(&d, q->v, q->choice, q->u, transport);
+        a->event = s.event;
+        a->is_delta = s.is_delta;
+        a->pdf = s.pdf;
+        a->eta = s.eta;
+        for (int k = 0; k < 3; ++k) {
+            a->l[k] = s.l[k];
+            a->m[k] = s.m[k];
+            a->weight[k] = s.weight[k];
+        }
+        a->density[0] = student_t_dielectric_eval_pdf(&d, q->v, q->l, transport, a->f[0]);
+        a->density[1] = student_t_dielectric_eval_pdf(&d, q->l, q->v, transport, a->f[1]);
+        a->density[2] = student_t_dielectric_eval_pdf(&d, q->v, s.l, transport, a->f[2]);
+    }
+}
