@@ -32,6 +32,20 @@ fn main() {
     let gammas: Vec<String> = names.iter().map(|name| name.replace('p', ".")).collect();
     fs::write(out.join("gammas.txt"), gammas.join("\n")).unwrap();
 
+    // The tables of dielectrics, of which there may be none.
+    let mut indices: Vec<String> = fs::read_dir(&folder)
+        .expect("the folder of the headers")
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+        .filter_map(|name| Some(name.strip_prefix("student_t_eta_")?.strip_suffix(".h")?.into()))
+        .collect();
+    indices.sort();
+    let includes: String =
+        indices.iter().map(|name| format!("#include \"student_t_eta_{name}.h\"\n")).collect();
+    let all: String = indices.iter().map(|name| format!("&student_t_eta_{name}, ")).collect();
+    fs::write(out.join("indices.h"), format!("{includes}#define INDICES {{{all}0}}\n")).unwrap();
+    let etas: Vec<String> = indices.iter().map(|name| name.replace('p', ".")).collect();
+    fs::write(out.join("indices.txt"), etas.join("\n")).unwrap();
+
     // Optimised, without relaxed arithmetic, every warning an error.
     for (cpp, standard, prefix) in [(false, "c99", "c_"), (true, "c++11", "cpp_")] {
         let mut build = cc::Build::new();

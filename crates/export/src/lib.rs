@@ -81,3 +81,27 @@ pub fn files(target: Target, shapes: &[Shape]) -> Vec<ExportFile> {
         Target::Shader(language, storage) => shader::files(language, storage, shapes),
     }
 }
+
+/// The headers of dielectrics of one index for C: the functions, and the file of the index. Their
+/// lobes are those of [`files`]. `generator` is the program that baked the tables.
+///
+/// ```no_run
+/// use microfacet_export::interface_files;
+/// use microfacet_sampler::port::interface_tables;
+/// use microfacet_sampler::{Masking, Tables};
+///
+/// let tables = Tables::from_bytes(&std::fs::read("glass/tables.safetensors")?)?;
+/// let glass = tables.family_dielectric(1.5, Masking::HeightCorrelated)?;
+/// let files = interface_files(&interface_tables(&glass), &tables.provenance().generator);
+/// assert_eq!(files.last().unwrap().name, "student_t_eta_1p5.h");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[must_use]
+pub fn interface_files(
+    tables: &microfacet_sampler::port::InterfaceTables,
+    generator: &str,
+) -> Vec<ExportFile> {
+    let mut files = c::files(&[]);
+    files.push(c::interface(tables, generator));
+    files
+}

@@ -8,7 +8,7 @@ use std::ffi::OsString;
 use clap::Subcommand;
 
 use microfacet_baker::store::OutputFolder;
-use microfacet_export::{ExportFile, Language, Target};
+use microfacet_export::{ExportFile, Language};
 
 use super::{Result, bail, summarize};
 
@@ -35,7 +35,7 @@ pub(super) struct Args {
 enum TargetArg {
     /// Headers for C99, C++11, CUDA and HIP.
     #[command(aliases = ["C", "c++", "cpp", "cuda", "hip"])]
-    C(shape::Args),
+    C(shape::HeaderArgs),
     /// A module of WGSL: WebGPU.
     #[command(aliases = ["WGSL"])]
     Wgsl(shape::ShaderArgs),
@@ -62,7 +62,7 @@ enum TargetArg {
 
 pub(super) fn run(args: Args) -> Result<()> {
     let (language, args) = match args.target {
-        TargetArg::C(args) => return shape::run(Target::C, &args),
+        TargetArg::C(args) => return shape::headers(args),
         TargetArg::Lut(args) => return lut::run(&args),
         TargetArg::Wgsl(args) => (Language::Wgsl, args),
         TargetArg::Glsl(args) => (Language::Glsl, args),

@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use microfacet_baker::store::OutputFolder;
-use microfacet_export::{Language, Shape, Storage, Target, files, texture_rows};
+use microfacet_core::Masking;
+use microfacet_export::{Language, Shape, Storage, Target, files, interface_files, texture_rows};
+use microfacet_sampler::port::interface_tables;
 use microfacet_tables::SIGMA_MAX;
 
 use crate::cli::words::distinct;
@@ -22,6 +24,53 @@ pub(super) struct Args {
     /// Folder to write into.
     #[arg(long, short, value_name = "DIR")]
     out: PathBuf,
+}
+
+/// Shapes and dielectrics for C.
+#[derive(clap::Args)]
+pub(super) struct HeaderArgs {
+    /// Shape in [1.501, inf]; 2 is GGX, inf is Beckmann. Several are separated by commas, or in
+    /// options of their own.
+    #[arg(long, value_name = "G", required_unless_present = "eta", value_delimiter = ',', value_parser = values::gamma)]
+    gamma: Vec<f64>,
+    /// Index of refraction, inside over outside, of dielectrics and plastics: shares of light by
+    /// gamma and sigma, from a set whose recipe has a dielectric of it with a range of sigma. The
+    /// default set has none. Several are separated by commas, or in options of their own.
+    #[arg(long, value_name = "N", value_delimiter = ',')]
+    eta: Vec<f64>,
+    /// A table file, or a folder with one; the embedded default if absent.
+    #[arg(long)]
+    tables: Option<PathBuf>,
+    /// Folder to write into.
+    #[arg(long, short, value_name = "DIR")]
+    out: PathBuf,
+}
+
+/// Writes headers of shapes and of dielectrics.
+pub(super) fn headers(args: HeaderArgs) -> Result<()> {
+    let HeaderArgs { gamma, eta, tables: path, out } = args;
+    let set = tables(path.as_deref())?;
+    let mut written = Vec::new();
+    for eta in distinct(eta.iter().copied()) {
+        // Every form of masking that the set has; if there is none, why.
+        let found = Masking::ALL.map(|masking| set.family_dielectric(eta, masking));
+        if let [Err(_), Err(why)] = found {
+            return Err(why.into());
+        }
+        for glass in found.into_iter().flatten() {
+            written.extend(interface_files(&interface_tables(&glass), &set.provenance().generator));
+        }
+    }
+    if !gamma.is_empty() {
+        run(Target::C, &Args { gamma, tables: path, out: out.clone() })?;
+    } else {
+        // The functions are the same for every index.
+        written.sort_by(|a, b| a.name.cmp(&b.name));
+        written.dedup();
+        return super::write(&OutputFolder::open(&out)?, &written);
+    }
+    written.retain(|file| file.name.contains("_eta_"));
+    super::write(&OutputFolder::open(&out)?, &written)
 }
 
 /// Shapes for shaders.

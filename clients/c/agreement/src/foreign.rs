@@ -21,8 +21,40 @@ unsafe extern "C" {
         l: *const [f32; 3],
         lobe: *mut f32,
     );
-    fn c_dielectric(shape: usize, count: usize, queries: *const Query, all: *mut Found);
-    fn cpp_dielectric(shape: usize, count: usize, queries: *const Query, all: *mut Found);
+    fn c_dielectric(
+        shape: usize,
+        table: i32,
+        compensation: i32,
+        count: usize,
+        queries: *const Query,
+        all: *mut Found,
+    );
+    fn cpp_dielectric(
+        shape: usize,
+        table: i32,
+        compensation: i32,
+        count: usize,
+        queries: *const Query,
+        all: *mut Found,
+    );
+    fn c_plastic(
+        shape: usize,
+        table: i32,
+        compensation: i32,
+        base: *const f32,
+        count: usize,
+        queries: *const Query,
+        all: *mut Found,
+    );
+    fn cpp_plastic(
+        shape: usize,
+        table: i32,
+        compensation: i32,
+        base: *const f32,
+        count: usize,
+        queries: *const Query,
+        all: *mut Found,
+    );
     fn c_g1(shape: usize, sigma: *const f32, count: usize, v: *const [f32; 3], g1: *mut f32);
 }
 
@@ -105,12 +137,41 @@ pub struct Found {
     pub density: [f32; 3],
 }
 
-/// Dielectrics by C and by C++.
-pub fn dielectric(shape: usize, queries: &[Query]) -> [Vec<Found>; 2] {
-    [c_dielectric, cpp_dielectric].map(|function: unsafe extern "C" fn(_, _, _, _)| {
-        let mut all = vec![Found::default(); queries.len()];
+/// The indices of the tables that were exported, in the order of the foreign functions.
+pub fn indices() -> Vec<f64> {
+    let text = include_str!(concat!(env!("OUT_DIR"), "/indices.txt"));
+    text.lines().map(|eta| eta.parse().expect("a number")).collect()
+}
+
+/// Dielectrics by C and by C++: of one bounce, or by the table and the form of compensation given.
+pub fn dielectric(
+    shape: usize,
+    by: Option<(usize, usize)>,
+    queries: &[Query],
+) -> [Vec<Found>; 2] {
+    let (table, form) = by.map_or((-1, 0), |(table, form)| (table as i32, form as i32));
+    let count = queries.len();
+    [c_dielectric, cpp_dielectric].map(|function: unsafe extern "C" fn(_, _, _, _, _, _)| {
+        let mut all = vec![Found::default(); count];
         // SAFETY: both are of the length passed, and of the layout of `interfaces.c`.
-        unsafe { function(shape, queries.len(), queries.as_ptr(), all.as_mut_ptr()) };
+        unsafe { function(shape, table, form, count, queries.as_ptr(), all.as_mut_ptr()) };
+        all
+    })
+}
+
+/// Plastics by C and by C++, by a table and a form of compensation.
+pub fn plastic(
+    shape: usize,
+    (table, form): (usize, usize),
+    base: [f32; 3],
+    queries: &[Query],
+) -> [Vec<Found>; 2] {
+    let (table, form, count) = (table as i32, form as i32, queries.len());
+    [c_plastic, cpp_plastic].map(|function: unsafe extern "C" fn(_, _, _, _, _, _, _)| {
+        let mut all = vec![Found::default(); count];
+        let base = base.as_ptr();
+        // SAFETY: both are of the length passed, and of the layout of `interfaces.c`.
+        unsafe { function(shape, table, form, base, count, queries.as_ptr(), all.as_mut_ptr()) };
         all
     })
 }

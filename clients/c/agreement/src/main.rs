@@ -2,7 +2,7 @@
 //! corners, and with the rows of `docs/reference.csv`; then times both in turns.
 //!
 //! `clients/c/run` exports the shapes and starts this program with the number of random points and
-//! the path of the rows as arguments. Exit status 1 if something differs by more than is allowed.
+//! the path of the rows as arguments, and with that of the set whose dielectrics were exported. Exit status 1 if something differs by more than is allowed.
 
 mod foreign;
 mod interfaces;
@@ -28,14 +28,18 @@ const LIMITS: Limits = Limits {
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [count, reference] = &arguments[..] else {
-        eprintln!("usage: student-t-in-c POINTS REFERENCE.csv");
-        return ExitCode::from(2);
+    let (count, reference, glass) = match &arguments[..] {
+        [count, reference] => (count, reference, None),
+        [count, reference, glass] => (count, reference, Some(&glass[..])),
+        _ => {
+            eprintln!("usage: student-t-in-c POINTS REFERENCE.csv [GLASS.safetensors]");
+            return ExitCode::from(2);
+        }
     };
     let count: usize = count.parse().expect("a number of points");
     let (tables, gammas) = (Tables::embedded(), foreign::gammas());
     let good = agree(&mut foreign::Compiled, &LIMITS, &gammas, count, reference);
-    let good = interfaces::agree(&gammas, count) & good;
+    let good = interfaces::agree(&gammas, count, glass) & good;
     println!("times in relation to the crate's, sigma 0.5");
     for gamma in [3.0, 1.65, 2.0] {
         if let Some(shape) = gammas.iter().position(|&g| g == gamma) {

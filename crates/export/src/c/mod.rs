@@ -2,9 +2,13 @@
 
 use std::fmt::Write;
 
+mod interface;
+
 use super::members::{Member, Value};
 use super::numbers::{as_typed, error, identifier, lines, single};
 use super::{AlbedoTable, ExportFile, Shape};
+
+pub(super) use interface::interface;
 
 /// The functions, which do not depend on a shape.
 const HEADER: &str = concat!(
@@ -21,8 +25,12 @@ const HEADER: &str = concat!(
 const HEADER_NAME: &str = "student_t.h";
 
 /// The materials of its lobes.
-const MATERIALS: &str =
-    concat!(include_str!("material.h"), include_str!("dielectric.h"), "\n#endif\n");
+const MATERIALS: &str = concat!(
+    include_str!("material.h"),
+    include_str!("dielectric.h"),
+    include_str!("plastic.h"),
+    "\n#endif\n"
+);
 
 const MATERIALS_NAME: &str = "student_t_materials.h";
 
