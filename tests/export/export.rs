@@ -36,7 +36,10 @@ fn a_shape_is_a_small_header_beside_the_functions() {
     let out = at.join("out");
     let shapes =
         ["1e300", "1p501", "1p65", "2", "3", "inf"].map(|g| format!("student_t_gamma_{g}.h"));
-    assert_eq!(names(&out), [&["student_t.h".into()], &shapes[..]].concat());
+    let [functions, materials] =
+        [&["student_t.h", "student_t.hpp"][..], &["student_t_materials.h"]]
+            .map(|names| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>());
+    assert_eq!(names(&out), [&functions[..], &shapes, &materials].concat());
     for name in names(&out) {
         let text = fs::read_to_string(out.join(&name)).unwrap();
         assert!(text.is_ascii() && text.ends_with("#endif\n"), "{name}");

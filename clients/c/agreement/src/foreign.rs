@@ -144,11 +144,7 @@ pub fn indices() -> Vec<f64> {
 }
 
 /// Dielectrics by C and by C++: of one bounce, or by the table and the form of compensation given.
-pub fn dielectric(
-    shape: usize,
-    by: Option<(usize, usize)>,
-    queries: &[Query],
-) -> [Vec<Found>; 2] {
+pub fn dielectric(shape: usize, by: Option<(usize, usize)>, queries: &[Query]) -> [Vec<Found>; 2] {
     let (table, form) = by.map_or((-1, 0), |(table, form)| (table as i32, form as i32));
     let count = queries.len();
     [c_dielectric, cpp_dielectric].map(|function: unsafe extern "C" fn(_, _, _, _, _, _)| {

@@ -37,7 +37,7 @@ STUDENT_T_FUNCTION float student_t_impl_refracted2(float eta, float cosine)
 }
 
 /* Reflectance of unpolarised light from the cosines on both sides; the same from either. */
-STUDENT_T_FUNCTION float student_t_impl_fresnel(float eta, float cosine, float refracted)
+STUDENT_T_FUNCTION float student_t_impl_fresnel_of(float eta, float cosine, float refracted)
 {
     const float p = (eta * cosine - refracted) / (eta * cosine + refracted);
     const float s = (cosine - eta * refracted) / (cosine + eta * refracted);
@@ -51,7 +51,7 @@ STUDENT_T_FUNCTION float student_t_fresnel_dielectric(float eta, float cosine)
 {
     const float square = student_t_impl_refracted2(eta, cosine);
     if (eta == 1.0f) return 0.0f; /* also at grazing, where the formula is 0/0 */
-    return square > 0.0f ? student_t_impl_fresnel(eta, cosine, sqrtf(square) / eta) : 1.0f;
+    return square > 0.0f ? student_t_impl_fresnel_of(eta, cosine, sqrtf(square) / eta) : 1.0f;
 }
 
 /* The cosine m.n below which facets of gamma < 2 that refract are only sampled: a view and a light
@@ -93,7 +93,7 @@ STUDENT_T_FUNCTION void student_t_impl_refracts(student_t_impl_sender *s, float 
 {
     const float ratio = eta / length;
     s->refracts = 1;
-    s->transmittance = 1.0f - student_t_impl_fresnel(eta, facing, refracted);
+    s->transmittance = 1.0f - student_t_impl_fresnel_of(eta, facing, refracted);
     s->jacobian = facing * refracted * ratio * ratio;
 }
 
@@ -154,30 +154,10 @@ STUDENT_T_FUNCTION float student_t_impl_part_f(student_t_impl_part part, float c
                                  student_t_impl_finite(1.0f / fabsf(cosine)));
 }
 
-/* A choice in [0, 1), and 0 for NaN: 1 would choose an event of probability 0. */
-STUDENT_T_FUNCTION float student_t_impl_choice(float choice)
-{
-    return student_t_impl_min(student_t_impl_unit(choice), 0.99999994f);
-}
-
 /* Whether two directions are finite. */
 STUDENT_T_FUNCTION int student_t_impl_are_finite(const float v[3], const float l[3])
 {
     return student_t_impl_dot(v, v) + student_t_impl_dot(l, l) <= STUDENT_T_LARGEST;
-}
-
-/* What returns no light. */
-STUDENT_T_FUNCTION student_t_sample student_t_impl_black(void)
-{
-    student_t_sample s;
-    int i;
-    s.event = STUDENT_T_ABSORBED;
-    s.is_delta = 0;
-    for (i = 0; i < 3; ++i) s.l[i] = s.m[i] = 0.0f;
-    for (i = 0; i < STUDENT_T_CHANNELS; ++i) s.weight[i] = 0.0f;
-    s.pdf = 0.0f;
-    s.eta = 1.0f;
-    return s;
 }
 
 /* Two parts, of which a sample takes the first with probability p. Densities are divided by their
@@ -814,7 +794,7 @@ STUDENT_T_FUNCTION student_t_sample student_t_dielectric_sample(const student_t_
                                                                 const float u[2],
                                                                 enum student_t_transport transport)
 {
-    student_t_sample sample = student_t_impl_black();
+    student_t_sample sample = student_t_impl_absorbed();
     student_t_impl_seen seen;
     student_t_impl_sender s;
     student_t_impl_shares shares;

@@ -150,3 +150,90 @@ fn side(side: &InterfaceSide, name: &str, at: &str) -> String {
         side.views
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use microfacet_sampler::port::steep_cosine;
+
+    use super::super::MATERIALS;
+    use super::*;
+
+    /// The members of a struct of the header, in order.
+    fn members(name: &str) -> Vec<String> {
+        let from = MATERIALS.split(&format!("typedef struct {name} {{")).nth(1).unwrap();
+        let body = from.split("\n}").next().unwrap();
+        let code: String = body.split("/*").map(|part| part.rsplit("*/").next().unwrap()).collect();
+        let declarations = code.split([';', ',']).filter(|names| !names.trim().is_empty());
+        let last = |names: &str| names.trim().rsplit([' ', '*']).next().unwrap().to_owned();
+        declarations.map(last).collect()
+    }
+
+    /// The members that comments and names of arrays in a definition state.
+    fn stated(text: &str) -> Vec<String> {
+        let mut names = Vec::new();
+        for line in text.lines() {
+            if let Some((_, comment)) = line.split_once("/* ") {
+                let comment = comment.split(" */").next().unwrap();
+                names.extend(comment.split(", ").map(str::to_owned));
+            } else if line.trim().starts_with("it_") {
+                names.push(line.trim().trim_end_matches(',').rsplit('_').next().unwrap().into());
+            }
+        }
+        names
+    }
+
+    fn tables() -> InterfaceTables {
+        let view = InterfaceView::Blend(microfacet_tables::axis::ViewBlend::BAKED);
+        let side = InterfaceSide {
+            view,
+            views: 6,
+            values: vec![[0.04, 0.9]; 6],
+            averages: vec![[0.1, 0.8, -5.0, 0.9]],
+            bands: vec![[[1.0; 33]; 2]],
+        };
+        InterfaceTables {
+            eta: 1.5,
+            masking: Masking::Uncorrelated,
+            smooth_transmitted: 0.9,
+            shapes: InterfaceAxis { coordinate: None, nodes: vec![0.0], ends: [3.0; 2] },
+            sigmas: InterfaceAxis { coordinate: None, nodes: vec![0.0], ends: [0.3; 2] },
+            sides: [side.clone(), side],
+        }
+    }
+
+    #[test]
+    fn values_stand_in_the_order_of_the_members() {
+        let tables = tables();
+        assert_eq!(
+            stated(&side(&tables.sides[0], "it", "outside")),
+            members("student_t_interface_side")
+        );
+        let text = definition(&tables, "it");
+        let own: String = text.lines().filter(|line| line.starts_with("    ")).fold(
+            String::new(),
+            |mut own, line| {
+                if !line.starts_with("        ") && !line.contains('}') {
+                    own += line;
+                    own.push('\n');
+                }
+                own
+            },
+        );
+        let mut names = stated(&own);
+        names.push("sides[2]".into());
+        assert_eq!(names, members("student_t_interface_table"));
+    }
+
+    #[test]
+    fn a_file_is_named_by_index_and_masking() {
+        let file = interface(&tables(), "a test");
+        assert_eq!(file.name, "student_t_eta_1p5_uncorrelated.h");
+    }
+
+    #[test]
+    fn the_steep_cosine_is_that_of_the_crate() {
+        // Of an index far from 1, (1 + η)/|1 − η| times the constant.
+        let constant = float(steep_cosine(3.0) * 0.5);
+        assert!(MATERIALS.contains(&format!("student_t_impl_min({constant} * (1.0f + eta)")));
+    }
+}

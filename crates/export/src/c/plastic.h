@@ -130,7 +130,7 @@ STUDENT_T_FUNCTION student_t_sample student_t_plastic_sample(const student_t_pla
                                                              const float v[3], float choice,
                                                              const float u[2])
 {
-    student_t_sample sample = student_t_impl_black();
+    student_t_sample sample = student_t_impl_absorbed();
     student_t_impl_shares shares;
     student_t_impl_part facets, broad, both;
     float l[3], m[3], share, base, coat, factor;
