@@ -36,7 +36,10 @@ fn a_shape_is_a_small_header_beside_the_functions() {
     let out = at.join("out");
     let shapes =
         ["1e300", "1p501", "1p65", "2", "3", "inf"].map(|g| format!("student_t_gamma_{g}.h"));
-    assert_eq!(names(&out), [&["student_t.h".into()], &shapes[..]].concat());
+    let [functions, materials] =
+        [&["student_t.h", "student_t.hpp"][..], &["student_t_materials.h"]]
+            .map(|names| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>());
+    assert_eq!(names(&out), [&functions[..], &shapes, &materials].concat());
     for name in names(&out) {
         let text = fs::read_to_string(out.join(&name)).unwrap();
         assert!(text.is_ascii() && text.ends_with("#endif\n"), "{name}");
@@ -49,6 +52,15 @@ fn a_shape_is_a_small_header_beside_the_functions() {
     let ggx = arrays(&fs::read_to_string(out.join("student_t_gamma_2.h")).unwrap());
     assert!(ggx.keys().all(|name| name.contains("albedo") || name.contains("averages")), "{ggx:?}");
     assert_eq!(ggx.len(), 4);
+}
+
+#[test]
+fn an_index_without_tables_is_refused_with_what_adds_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let why = refused(folder.path(), &["export", "c", "--eta", "1.5", "--out", "out"]);
+    assert!(why.contains("fresnel = { dielectric = 1.5 }"), "{why}");
+    assert!(!folder.path().join("out").exists());
+    refused(folder.path(), &["export", "c", "--out", "out"]);
 }
 
 #[test]

@@ -8,6 +8,7 @@ fn main() {
     println!("cargo::rerun-if-env-changed=STUDENT_T_HEADERS");
     println!("cargo::rerun-if-changed=src/lookups.c");
     println!("cargo::rerun-if-changed=src/families.c");
+    println!("cargo::rerun-if-changed=src/interfaces.c");
     let folder =
         PathBuf::from(env::var_os("STUDENT_T_HEADERS").expect("STUDENT_T_HEADERS: a folder"));
     println!("cargo::rerun-if-changed={}", folder.display());
@@ -32,6 +33,20 @@ fn main() {
     let gammas: Vec<String> = names.iter().map(|name| name.replace('p', ".")).collect();
     fs::write(out.join("gammas.txt"), gammas.join("\n")).unwrap();
 
+    // The tables of dielectrics, of which there may be none.
+    let mut indices: Vec<String> = fs::read_dir(&folder)
+        .expect("the folder of the headers")
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+        .filter_map(|name| Some(name.strip_prefix("student_t_eta_")?.strip_suffix(".h")?.into()))
+        .collect();
+    indices.sort();
+    let includes: String =
+        indices.iter().map(|name| format!("#include \"student_t_eta_{name}.h\"\n")).collect();
+    let all: String = indices.iter().map(|name| format!("&student_t_eta_{name}, ")).collect();
+    fs::write(out.join("indices.h"), format!("{includes}#define INDICES {{{all}0}}\n")).unwrap();
+    let etas: Vec<String> = indices.iter().map(|name| name.replace('p', ".")).collect();
+    fs::write(out.join("indices.txt"), etas.join("\n")).unwrap();
+
     // Optimised, without relaxed arithmetic, every warning an error.
     for (cpp, standard, prefix) in [(false, "c99", "c_"), (true, "c++11", "cpp_")] {
         let mut build = cc::Build::new();
@@ -42,7 +57,8 @@ fn main() {
             // name.
             build.flag("-xc++");
         }
-        build.define("PREFIX", prefix).includes([&folder, &out]).files(["src/lookups.c", "src/families.c"]);
+        build.define("PREFIX", prefix).includes([&folder, &out]);
+        build.files(["src/lookups.c", "src/families.c", "src/interfaces.c"]);
         build.compile(&format!("{prefix}lookups"));
     }
 }

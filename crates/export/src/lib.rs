@@ -12,7 +12,8 @@
 //!
 //! let shape = Shape::bind(&Tables::embedded(), 3.0)?;
 //! let names = files(Target::C, &[shape]).into_iter().map(|file| file.name);
-//! assert_eq!(names.collect::<Vec<_>>(), ["student_t.h", "student_t_gamma_3.h"]);
+//! let functions = ["student_t.h", "student_t_materials.h", "student_t.hpp"];
+//! assert_eq!(names.collect::<Vec<_>>(), [&functions[..], &["student_t_gamma_3.h"]].concat());
 //! # Ok::<(), microfacet_sampler::MaterialError>(())
 //! ```
 
@@ -88,4 +89,28 @@ pub fn files(target: Target, shapes: &[Shape]) -> Vec<ExportFile> {
 /// `binary`, as a file of bytes.
 pub fn family_files(family: &Family, binary: bool) -> Vec<ExportFile> {
     c::family(family, binary)
+}
+
+/// The headers of dielectrics of one index for C: the functions, and the file of the index. Their
+/// lobes are those of [`files`]. `generator` is the program that baked the tables.
+///
+/// ```no_run
+/// use microfacet_export::interface_files;
+/// use microfacet_sampler::port::interface_tables;
+/// use microfacet_sampler::{Masking, Tables};
+///
+/// let tables = Tables::from_bytes(&std::fs::read("glass/tables.safetensors")?)?;
+/// let glass = tables.family_dielectric(1.5, Masking::HeightCorrelated)?;
+/// let files = interface_files(&interface_tables(&glass), &tables.provenance().generator);
+/// assert_eq!(files.last().unwrap().name, "student_t_eta_1p5.h");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[must_use]
+pub fn interface_files(
+    tables: &microfacet_sampler::port::InterfaceTables,
+    generator: &str,
+) -> Vec<ExportFile> {
+    let mut files = c::files(&[]);
+    files.push(c::interface(tables, generator));
+    files
 }

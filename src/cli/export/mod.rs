@@ -18,8 +18,12 @@ use super::{Result, bail, summarize};
 #[command(after_help = "Example:
   microfacet-bake export c --gamma 3 --gamma 1.65 --out student-t
 writes student_t.h, student_t_gamma_3.h and student_t_gamma_1p65.h: headers for C99,
-C++11, CUDA and HIP. student_t.h says how to use them. With --family in place of shapes
-student_t_family.h has all gamma.
+C++11, CUDA and HIP. student_t.h says how to use them.
+  microfacet-bake export c --family --out student-t
+writes student_t_family.h, with every gamma, for renderers that have it at each hit.
+  microfacet-bake export c --eta 1.5 --tables glass --out student-t
+writes student_t_eta_1p5.h, the shares of light of glass and plastic at any sigma and
+gamma that the set covers.
   microfacet-bake export wgsl --gamma 3 --gamma 1.65 --out student-t
 writes student_t.wgsl, with the functions, a program that uses them, and the tables of
 both shapes as student_t.bin, described by student_t.json.

@@ -3,9 +3,13 @@
 use std::path::PathBuf;
 
 use microfacet_baker::store::OutputFolder;
+use microfacet_core::Masking;
 use microfacet_export::{
-    ExportFile, Family, Language, Shape, Storage, Target, family_files, files, texture_rows,
+    ExportFile, Family, Language, Shape, Storage, Target, family_files, files, interface_files,
+    texture_rows,
 };
+use microfacet_sampler::Tables;
+use microfacet_sampler::port::interface_tables;
 use microfacet_tables::SIGMA_MAX;
 
 use crate::cli::words::distinct;
@@ -28,15 +32,22 @@ struct Ends {
   microfacet-bake export c --family --out student-t
 Every gamma and sigma, for renderers that have both at each hit.
   microfacet-bake export c --gamma 3 --gamma 1.65 --out student-t
-Two shapes for any sigma.")]
+Two shapes for any sigma.
+  microfacet-bake export c --family --eta 1.5 --tables glass --out student-t
+And the shares of light of glass and plastic, from a set that has them.")]
 pub(super) struct CArgs {
     /// Shape in [1.501, inf]; 2 is GGX, inf is Beckmann. Several are separated by commas, or in
     /// options of their own.
-    #[arg(long, value_name = "G", required_unless_present = "family", value_delimiter = ',', value_parser = values::gamma)]
+    #[arg(long, value_name = "G", required_unless_present_any = ["family", "eta"], value_delimiter = ',', value_parser = values::gamma)]
     gamma: Vec<f64>,
     /// All shapes, with gamma as an argument of each call, as student_t_family.h.
     #[arg(long, conflicts_with = "gamma")]
     family: bool,
+    /// Index of refraction, inside over outside, of dielectrics and plastics: shares of light by
+    /// gamma and sigma, from a set whose recipe has a dielectric of it with a range of sigma. The
+    /// default set has none. Several are separated by commas, or in options of their own.
+    #[arg(long, value_name = "N", value_delimiter = ',')]
+    eta: Vec<f64>,
     /// Write the tables of the family as a file of bytes, which a program reads, not as text.
     #[arg(long, requires = "family")]
     binary: bool,
@@ -81,15 +92,35 @@ pub(super) fn shader(language: Language, args: &ShaderArgs) -> Result<()> {
 }
 
 pub(super) fn c(args: &CArgs) -> Result<()> {
+    let set = tables(args.ends.tables.as_deref())?;
+    let mut written = Vec::new();
     if args.family {
-        let family = Family::bind(&tables(args.ends.tables.as_deref())?, !args.no_albedo)?;
-        return write(&args.ends, &family_files(&family, args.binary));
+        written = family_files(&Family::bind(&set, !args.no_albedo)?, args.binary);
+    } else if !args.gamma.is_empty() {
+        let mut shapes = bind(&args.gamma, &args.ends)?;
+        if args.no_albedo {
+            shapes.iter_mut().for_each(Shape::leave_out_albedos);
+        }
+        written = files(Target::C, &shapes);
     }
-    let mut shapes = bind(&args.gamma, &args.ends)?;
-    if args.no_albedo {
-        shapes.iter_mut().for_each(Shape::leave_out_albedos);
+    for eta in distinct(args.eta.iter().copied()) {
+        written.extend(interfaces(&set, eta)?);
     }
-    write(&args.ends, &files(Target::C, &shapes))
+    // The functions are the same for all.
+    written.sort_by(|a, b| a.name.cmp(&b.name));
+    written.dedup();
+    write(&args.ends, &written)
+}
+
+/// The headers of a dielectric, of every form of masking that the set has; if there is none, why.
+fn interfaces(set: &Tables, eta: f64) -> Result<Vec<ExportFile>> {
+    let found = Masking::ALL.map(|masking| set.family_dielectric(eta, masking));
+    if let [Err(_), Err(why)] = found {
+        return Err(why.into());
+    }
+    let generator = &set.provenance().generator;
+    let files = |glass| interface_files(&interface_tables(&glass), generator);
+    Ok(found.into_iter().flatten().flat_map(files).collect())
 }
 
 fn write(ends: &Ends, files: &[ExportFile]) -> Result<()> {

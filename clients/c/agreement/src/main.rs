@@ -2,10 +2,12 @@
 //! corners, and with the rows of `docs/reference.csv`; then times both in turns.
 //!
 //! `clients/c/run` exports the shapes and starts this program with the number of random points and
-//! the paths of the rows and of a family's file as arguments. Exit status 1 if something differs by more than is allowed.
+//! the paths of the rows, of a family's file, and of the set whose dielectrics were exported as
+//! arguments. Exit status 1 if something differs by more than is allowed.
 
 mod families;
 mod foreign;
+mod interfaces;
 mod timing;
 
 use std::process::ExitCode;
@@ -28,14 +30,15 @@ const LIMITS: Limits = Limits {
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [count, reference, family] = &arguments[..] else {
-        eprintln!("usage: student-t-in-c POINTS REFERENCE.csv FAMILY.bin");
+    let [count, reference, family, glass] = &arguments[..] else {
+        eprintln!("usage: student-t-in-c POINTS REFERENCE.csv FAMILY.bin GLASS.safetensors");
         return ExitCode::from(2);
     };
     let count: usize = count.parse().expect("a number of points");
     let (tables, gammas) = (Tables::embedded(), foreign::gammas());
     let good = agree(&mut foreign::Compiled, &LIMITS, &gammas, count, reference);
     let good = families::agree(count, family) & good;
+    let good = interfaces::agree(&gammas, count, Some(glass)) & good;
     println!("times in relation to the crate's, sigma 0.5");
     for gamma in [3.0, 1.65, 2.0] {
         if let Some(shape) = gammas.iter().position(|&g| g == gamma) {

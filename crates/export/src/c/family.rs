@@ -22,8 +22,7 @@ pub(super) fn file(family: &Family, binary: bool) -> ExportFile {
 
 fn text(family: &Family, block: &Block) -> String {
     let mut text = comment(family);
-    let [windows, numbers, codes] =
-        [block.windows.len(), block.numbers.len(), block.codes.len()];
+    let [windows, numbers, codes] = [block.windows.len(), block.numbers.len(), block.codes.len()];
     write!(
         text,
         "#ifndef STUDENT_T_FAMILY_H

@@ -1,11 +1,47 @@
 /* SPDX-License-Identifier: CC0-1.0 OR MIT
  *
- * student_t_materials.h: conductors, dielectrics and plastics of student_t.h's lobes.
+ * student_t_materials.h: whole materials of the lobes of student_t.h, made at every hit.
+ *
+ *     #include "student_t_gamma_3.h"
+ *     #include "student_t_materials.h"
+ *
+ *     const student_t_lobe lobe = student_t_gamma_3_lobe(0.3f, 0.3f);
+ *     const student_t_conductor gold = student_t_conductor_at(
+ *         &lobe, &student_t_gold, STUDENT_T_HEIGHT_CORRELATED, STUDENT_T_KULLA_CONTY);
+ *     const student_t_sample s = student_t_conductor_sample(&gold, v, choice, u);
+ *     if (s.event == STUDENT_T_ABSORBED) return; // else the path goes on to s.l, times s.weight
+ *     pdf = student_t_conductor_eval_pdf(&gold, v, l, f); // towards a lamp: f[CHANNELS]
+ *
+ * Conventions are those of the Rust crate microfacet-sampler. Directions are unit vectors in the
+ * tangent frame, n = +z; view v and light l both point away from the surface. f is without the
+ * cosine, per steradian. The weight of a sample is f |cos theta_l|/pdf, computed without dividing,
+ * so that it stays finite where f and the density do not. Densities are per steradian of l, of all
+ * that is drawn but deltas. A lobe that is effectively smooth (student_t_effectively_smooth) is a
+ * mirror, which is a delta: its f and density are 0, and only samples return its light. A direction
+ * in the surface, or with NaN among its coordinates, neither sends nor gets light. All results are
+ * finite.
+ *
+ * choice and u[2] are three random numbers in [0, 1], ends included; others are taken at the nearer
+ * end, NaN at 0. choice chooses among parts of a material, u the direction, so that a stratified u
+ * stays stratified.
  */
 #ifndef STUDENT_T_MATERIALS_H
 #define STUDENT_T_MATERIALS_H
 
 #include "student_t.h"
+
+#if STUDENT_T_LAYOUT != 3
+#error "student_t.h is of another version than student_t_materials.h: export both again"
+#endif
+
+/* A conversion, which C++ spells without a cast of C. */
+#ifndef STUDENT_T_IMPL_CAST
+#ifdef __cplusplus
+#define STUDENT_T_IMPL_CAST(type, x) static_cast<type>(x)
+#else
+#define STUDENT_T_IMPL_CAST(type, x) ((type)(x))
+#endif
+#endif
 
 /* The channels of weights and reflectances; define it beforehand to have another number. */
 #ifndef STUDENT_T_CHANNELS
@@ -25,17 +61,105 @@ enum student_t_compensation_form {
 enum student_t_transport { STUDENT_T_RADIANCE = 0, STUDENT_T_IMPORTANCE = 1 };
 
 /* What a sample is; the path of one that is absorbed ends with the weight 0. */
-enum student_t_event { STUDENT_T_ABSORBED = 0, STUDENT_T_REFLECTED = 1, STUDENT_T_TRANSMITTED = 2 };
+enum student_t_event {
+    STUDENT_T_ABSORBED = 0,
+    STUDENT_T_REFLECTED = 1,
+    STUDENT_T_TRANSMITTED = 2
+};
 
 /* A sampled light. */
 typedef struct student_t_sample {
     enum student_t_event event;
-    int is_delta;     /* evaluation gives 0 for a delta: a mirror's, and what steep facets refract */
-    float l[3];       /* the light, of unit length, away from the surface */
-    float m[3];       /* the normal of its facet; n for a mirror, and halfway for further bounces */
+    int is_delta; /* evaluation gives 0 for a delta: a mirror's, and what steep facets refract */
+    float l[3];   /* the light, of unit length, away from the surface */
+    float m[3];   /* the normal of its facet; n for a mirror, and halfway for further bounces */
     float weight[STUDENT_T_CHANNELS]; /* f |cos|/pdf */
-    float pdf;        /* per steradian; 0 for a delta */
-    float eta;        /* index on the side of l over that on the side of the view; 1 if reflected */
+    float pdf;    /* per steradian; 0 for a delta */
+    float eta;    /* index on the side of l over that on the side of the view; 1 if reflected */
 } student_t_sample;
 
-#endif
+/* No light: a sample that ends its path. */
+STUDENT_T_FUNCTION student_t_sample student_t_impl_absorbed(void)
+{
+    student_t_sample s;
+    int i;
+    s.event = STUDENT_T_ABSORBED;
+    s.is_delta = 0;
+    s.l[0] = s.l[1] = s.l[2] = 0.0f;
+    s.m[0] = s.m[1] = s.m[2] = 0.0f;
+    for (i = 0; i < STUDENT_T_CHANNELS; ++i) s.weight[i] = 0.0f;
+    s.pdf = 0.0f;
+    s.eta = 1.0f;
+    return s;
+}
+
+/* Whether all coordinates are finite, and their squares. */
+STUDENT_T_FUNCTION int student_t_impl_is_direction(const float w[3])
+{
+    return w[0] * w[0] + w[1] * w[1] + w[2] * w[2] <= STUDENT_T_LARGEST;
+}
+
+/* A choice in [0, 1), NaN as 0: 1 would choose a part of probability 0. */
+STUDENT_T_FUNCTION float student_t_impl_choice(float choice)
+{
+    return student_t_impl_min(student_t_impl_max(choice, 0.0f), 0.99999994f);
+}
+
+/* What facets of reflectance 1 send from a view to a light. */
+typedef struct student_t_impl_white {
+    float cosine; /* v.m, at which facets have their reflectance */
+    float weight; /* G2(v, l)/G1(v) */
+    float pdf;    /* per steradian of l */
+} student_t_impl_white;
+
+/* Towards a given light, both above the horizon; m is v + l. Directions that are NaN or infinite
+ * get nothing. */
+STUDENT_T_FUNCTION student_t_impl_white
+student_t_impl_halfway(const student_t_lobe *lobe, enum student_t_masking masking, const float v[3],
+                       const float l[3], float m[3])
+{
+    student_t_impl_white white = {0.0f, 0.0f, 0.0f};
+    student_t_impl_facet facet;
+    float length2;
+    m[0] = v[0] + l[0];
+    m[1] = v[1] + l[1];
+    m[2] = v[2] + l[2];
+    length2 = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
+    if (!(length2 > 0.0f && length2 <= STUDENT_T_LARGEST)) return white;
+    facet = student_t_impl_facet_of(lobe, v, m, length2, l, masking);
+    white.cosine = 0.5f * sqrtf(length2); /* v.m = 1 + v.l = |m|^2/2 */
+    white.weight = facet.weight;
+    white.pdf = 0.25f * facet.density;
+    return white;
+}
+
+/* Off a facet drawn for a view from above; returns 0 where the light is not above. */
+STUDENT_T_FUNCTION int student_t_impl_draw(const student_t_lobe *lobe,
+                                           enum student_t_masking masking, const float v[3],
+                                           const float u[2], float m[3], float l[3],
+                                           student_t_impl_white *white)
+{
+    student_t_impl_facet facet;
+    student_t_lobe_sample_visible_normal(lobe, v, u, m);
+    white->cosine = v[0] * m[0] + v[1] * m[1] + v[2] * m[2];
+    l[0] = 2.0f * white->cosine * m[0] - v[0];
+    l[1] = 2.0f * white->cosine * m[1] - v[1];
+    l[2] = 2.0f * white->cosine * m[2] - v[2];
+    if (!(white->cosine > 0.0f && l[2] > 0.0f)) return 0;
+    facet = student_t_impl_facet_of(lobe, v, m, 1.0f, l, masking);
+    white->weight = facet.weight;
+    white->pdf = 0.25f * facet.density;
+    return 1;
+}
+
+/* f of a part of a material from its weight and its density, both alone, and 1/|cos theta_l|, which
+ * is finite. */
+STUDENT_T_FUNCTION float student_t_impl_f(float weight, float pdf, float inverse)
+{
+    return student_t_impl_finite(weight * pdf * inverse);
+}
+
+STUDENT_T_FUNCTION float student_t_impl_inverse_cosine(float cosine)
+{
+    return student_t_impl_finite(1.0f / fabsf(cosine));
+}

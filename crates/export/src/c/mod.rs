@@ -1,12 +1,17 @@
 //! Headers for C99, C++11, CUDA and HIP.
 
 mod family;
+mod interface;
 
 use std::fmt::Write;
+
+use microfacet_sampler::{ConductorFresnel, Metal};
 
 use super::members::{Member, Value};
 use super::numbers::{as_typed, error, identifier, lines, single};
 use super::{AlbedoTable, ExportFile, Family, Shape};
+
+pub(super) use interface::interface;
 
 /// The functions, which do not depend on a shape.
 const HEADER: &str = concat!(
@@ -22,6 +27,21 @@ const HEADER: &str = concat!(
 );
 
 const HEADER_NAME: &str = "student_t.h";
+
+/// Whole materials, without the metals and the end of the file.
+const MATERIALS: &str = concat!(
+    include_str!("material.h"),
+    include_str!("conductor.h"),
+    include_str!("dielectric.h"),
+    include_str!("plastic.h"),
+);
+
+const MATERIALS_NAME: &str = "student_t_materials.h";
+
+/// The materials for C++17.
+const FRONT: &str = include_str!("student_t.hpp");
+
+const FRONT_NAME: &str = "student_t.hpp";
 
 /// `STUDENT_T_LAYOUT` of the header.
 const LAYOUT: u32 = 3;
@@ -45,7 +65,11 @@ pub(super) fn family(family: &Family, binary: bool) -> Vec<ExportFile> {
 
 /// The files that do not depend on tables.
 fn functions() -> Vec<ExportFile> {
-    vec![ExportFile::new(HEADER_NAME, HEADER)]
+    vec![
+        ExportFile::new(HEADER_NAME, HEADER),
+        ExportFile::new(MATERIALS_NAME, MATERIALS.to_owned() + &metals() + "\n#endif\n"),
+        ExportFile::new(FRONT_NAME, FRONT),
+    ]
 }
 
 /// The lines of a header that ask for the layout that it has.
@@ -56,6 +80,39 @@ fn layout_check(name: &str) -> String {
 #endif
 "
     )
+}
+
+/// The reflectances of metals by name.
+fn metals() -> String {
+    let mut text = "
+/* ---- Metals ------------------------------------------------------------------------------------
+ * Indices eta + ik of metals in air, for the red, green and blue of linear light: measured at 650,
+ * 550 and 450 nm, from the tables of https://refractiveindex.info (CC0), rounded to three decimals.
+ */
+
+#if STUDENT_T_CHANNELS == 3
+"
+    .to_owned();
+    for metal in Metal::ALL {
+        let average = ConductorFresnel::from(metal).average();
+        let [eta, k] = [metal.eta(), metal.k()].map(|all| all.map(|x| x as f32));
+        let [eta, k, average] = [eta, k, average].map(|all| all.map(float).join(", "));
+        let source = metal.source();
+        write!(
+            text,
+            "
+/* {source} */
+STUDENT_T_DATA student_t_reflectance student_t_{metal} = {{
+    STUDENT_T_ETA_K,
+    {{{eta}}},
+    {{{k}}},
+    {{{average}}},
+}};
+"
+        )
+        .expect("memory");
+    }
+    text + "#endif\n"
 }
 
 fn text(shape: &Shape, name: &str) -> String {
@@ -183,7 +240,9 @@ fn literal(value: Value, name: &str) -> String {
         Value::Flag(flag) => u8::from(flag).to_string(),
         Value::Count(count) => count.to_string(),
         Value::Number(number) => float(number),
-        Value::Table(part) => part.map_or("STUDENT_T_IMPL_NULL".into(), |part| format!("{name}_{part}")),
+        Value::Table(part) => {
+            part.map_or("STUDENT_T_IMPL_NULL".into(), |part| format!("{name}_{part}"))
+        }
     }
 }
 
@@ -201,6 +260,7 @@ mod tests {
     #[test]
     fn files_of_shapes_ask_for_the_layout_of_the_functions() {
         assert!(HEADER.contains(&format!("\n#define STUDENT_T_LAYOUT {LAYOUT}\n")));
+        assert!(MATERIALS.contains(&format!("\n#if STUDENT_T_LAYOUT != {LAYOUT}\n")));
     }
 
     #[test]
@@ -215,6 +275,21 @@ mod tests {
         for constant in constants {
             assert!(HEADER.contains(&constant), "{constant}");
         }
+        let materials = [
+            format!("b * ({} * mu", float(F82_SCALE as f32)),
+            format!("r.b[i] * {}", float(F82_AVERAGE as f32)),
+            format!("r.a[i]) * (1.0f / {}f)", single((1.0 / SCHLICK_AVERAGE) as f32)),
+        ];
+        for constant in materials {
+            assert!(MATERIALS.contains(&constant), "{constant}");
+        }
+    }
+
+    #[test]
+    fn metals_are_those_of_the_crate() {
+        let text = metals();
+        assert!(text.contains("student_t_gold = {\n    STUDENT_T_ETA_K,\n    {0.156f, 0.424f, "));
+        assert_eq!(text.matches("STUDENT_T_DATA").count(), Metal::ALL.len());
     }
 
     #[test]

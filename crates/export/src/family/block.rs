@@ -49,8 +49,7 @@ const LOGARITHM: f64 = 2e-4;
 
 impl Block {
     pub(crate) fn new(family: &Family, layout: u32) -> Self {
-        let mut block =
-            Self { head: Whole(0), windows: vec![], numbers: vec![], codes: vec![] };
+        let mut block = Self { head: Whole(0), windows: vec![], numbers: vec![], codes: vec![] };
         // The sizes of all that comes before numbers, and before codes, are needed for offsets.
         let windows: usize = family.parts.iter().map(|part| part.windows.cells.len()).sum();
         let numbers_at = HEAD + WINDOW * windows;
@@ -60,7 +59,9 @@ impl Block {
         let empty = parts[0].zeroed();
         parts.resize(2, empty);
         let volumes = match &family.albedos {
-            Some(albedos) => albedos.iter().map(|table| block.volume(table, &mut offsets)).collect(),
+            Some(albedos) => {
+                albedos.iter().map(|table| block.volume(table, &mut offsets)).collect()
+            }
             None => vec![Group(volume_of(None, [[0.0; 2]; 6], [0; 6])); 2],
         };
         let codes_at = numbers_at + 4 * block.numbers.len();
@@ -255,9 +256,8 @@ fn short(x: f32) -> f32 {
 
 /// The members of a volume; all 0 where there is none.
 fn volume_of(volume: Option<&VolumeTables>, codes: [[f32; 2]; 6], at: [u32; 6]) -> Vec<Item> {
-    let pair = |of: fn(&VolumeTables) -> [f32; 2]| {
-        Group(volume.map_or([0.0; 2], of).map(Number).into())
-    };
+    let pair =
+        |of: fn(&VolumeTables) -> [f32; 2]| Group(volume.map_or([0.0; 2], of).map(Number).into());
     let number = |of: fn(&VolumeTables) -> f32| Number(volume.map_or(0.0, of));
     vec![
         pair(|volume| volume.shapes),

@@ -10,9 +10,8 @@ impl Codes {
     /// Of numbers that are met to a tolerance, or as nearly as 16 bits allow. Fewer levels have
     /// fewer digits in a text.
     pub(super) fn of(numbers: impl Iterator<Item = f32>, tolerance: f64) -> Self {
-        let ends = numbers.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], x| {
-            [low.min(x), high.max(x)]
-        });
+        let ends = numbers
+            .fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
         let range = f64::from(ends[1]) - f64::from(ends[0]);
         let levels = (0.5 * range / tolerance).ceil().clamp(1.0, f64::from(u16::MAX));
         Self { start: ends[0], step: (range / levels) as f32 }

@@ -64,11 +64,59 @@ pub(crate) struct Place {
     width: usize,
 }
 
-#[derive(Clone, Copy, Debug)]
-enum View {
+/// The coordinate of views of one side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum View {
+    /// Of the thin side.
     Blend(ViewBlend),
-    /// With 1/η of the dense side.
+    /// Of the dense side, with 1/η of it.
     Critical(CriticalBlend, f64),
+}
+
+/// An axis of the material of [`InterfaceTables`], whose nodes are evenly spaced in a coordinate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InterfaceAxis<M> {
+    /// `None` for one node.
+    pub coordinate: Option<M>,
+    /// The coordinates of the nodes.
+    pub nodes: Vec<f64>,
+    /// The smallest and the largest quantity that is covered.
+    pub ends: [f64; 2],
+}
+
+/// The shares of [`InterfaceTables`] seen from one side, and what is derived from them at each node
+/// of γ and σ, those of σ fastest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InterfaceSide {
+    /// The coordinate of views.
+    pub view: View,
+    /// Nodes along the view.
+    pub views: usize,
+    /// The shares reflected and transmitted: by γ, by σ, by view.
+    pub values: Vec<[f32; 2]>,
+    /// Averages over views: reflected, transmitted, the binary logarithm of what is lost, and
+    /// transmitted with Turquin's factor.
+    pub averages: Vec<[f32; 4]>,
+    /// The density of further bounces: factors at the ends of its bands, and shares below them.
+    pub bands: Vec<[[f32; 33]; 2]>,
+}
+
+/// The albedos of dielectrics of one index of refraction at any γ and σ, as
+/// [`FamilyDielectric`](crate::FamilyDielectric) reads them, for exports to other languages.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InterfaceTables {
+    /// The index, inside over outside.
+    pub eta: f32,
+    /// The form of masking.
+    pub masking: Masking,
+    /// The average that a smooth interface transmits from outside.
+    pub smooth_transmitted: f32,
+    /// γ.
+    pub shapes: InterfaceAxis<LogShape>,
+    /// σ.
+    pub sigmas: InterfaceAxis<LogRoughness>,
+    /// Seen from outside, and from inside.
+    pub sides: [InterfaceSide; 2],
 }
 
 /// The view's coordinate at one γ and σ.
@@ -79,6 +127,11 @@ enum Prepared {
 }
 
 impl<M: Copy> Nodes<M> {
+    fn axis(&self) -> InterfaceAxis<M> {
+        let Self { coordinate, at, ends, .. } = self;
+        InterfaceAxis { coordinate: *coordinate, nodes: at.clone(), ends: *ends }
+    }
+
     /// Of an axis between two quantities; of no axis, one node. `None` where nothing is to be read
     /// between nodes.
     fn new(
@@ -295,6 +348,19 @@ impl InterfaceAlbedos {
         let place = Place { shape, sigma: of_sigma, width: self.sigmas.len() };
         let outside = self.sides[0].view.prepare(sigma, gamma);
         InterfaceAt { albedos: self, place, sigma, gamma, outside }
+    }
+
+    /// The axes and shares, without what is derived from them.
+    pub(crate) fn tables(&self, eta: f32, smooth_transmitted: f32) -> InterfaceTables {
+        let sides = self.sides.each_ref().map(|Side { view, views, values }| InterfaceSide {
+            view: *view,
+            views: *views,
+            values: values.as_chunks().0.to_vec(),
+            averages: Vec::new(),
+            bands: Vec::new(),
+        });
+        let (masking, shapes, sigmas) = (self.masking, self.shapes.axis(), self.sigmas.axis());
+        InterfaceTables { eta, masking, smooth_transmitted, shapes, sigmas, sides }
     }
 
     /// The memory that it takes, in bytes.

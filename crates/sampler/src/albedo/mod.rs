@@ -27,6 +27,8 @@ pub use curve::{DielectricAlbedo, FresnelAlbedo, ViewCurve};
 pub use directional::Albedo;
 pub use family::{AlbedoAt, FamilyAlbedo};
 pub(crate) use interface::{InterfaceAlbedos, InterfaceAt};
+#[doc(hidden)]
+pub use interface::{InterfaceAxis, InterfaceSide, InterfaceTables, View};
 pub use moments::Moments;
 pub use reflectance_average::{f82_tint_average, fresnel_average, schlick_average};
 pub use shape::{ShapeAlbedo, ShapeAlbedoAt};

@@ -100,6 +100,11 @@ impl Broad {
         broad
     }
 
+    /// The factors at the ends of the bands, and the shares below them.
+    pub(super) fn bands(&self) -> [[f32; BANDS + 1]; 2] {
+        [self.factors, self.shares]
+    }
+
     /// A direction above the horizon from two numbers in [0, 1] (clamped to them, NaN to 0).
     #[inline]
     pub(super) fn sample(&self, u: [f32; 2]) -> Vec3 {

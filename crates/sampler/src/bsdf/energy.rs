@@ -146,6 +146,11 @@ impl Totals {
         Self { lost: [0.0; 2], reflected: [1.0; 2], transmitted }
     }
 
+    /// The average that is transmitted from outside.
+    pub(super) fn transmitted(&self) -> f32 {
+        self.transmitted
+    }
+
     /// Of a rough interface, from its averages.
     pub(super) fn rough(averages: [Averages; 2], compensation: Compensation, eta: f32) -> Self {
         let lost = averages.map(|[_, _, lost, _]| lost);

@@ -11,7 +11,7 @@ use super::broad::Broad;
 use super::compensation::Compensation;
 use super::energy::{Averages, Energy, InterfaceAlbedo, Shares, Totals, averages, smooth_shares};
 use super::interface::checked;
-use crate::albedo::{InterfaceAlbedos, InterfaceAt};
+use crate::albedo::{InterfaceAlbedos, InterfaceAt, InterfaceTables};
 use crate::bind_error::BindError;
 use crate::elementary::exp2;
 use crate::tables::Tables;
@@ -115,6 +115,17 @@ impl FamilyDielectric {
     #[must_use]
     pub fn masking(&self) -> Masking {
         self.albedos.masking
+    }
+
+    /// All that lookups read.
+    pub(crate) fn tables(&self) -> InterfaceTables {
+        let Self { albedos, eta, averages, broad, smooth, .. } = self;
+        let mut tables = albedos.tables(*eta, smooth.transmitted());
+        for (side, (of, nodes)) in tables.sides.iter_mut().zip(averages).enumerate() {
+            of.averages = nodes.iter().map(|node| node.to_array()).collect();
+            of.bands = broad.iter().map(|sides| sides[side].bands()).collect();
+        }
+        tables
     }
 
     /// The memory that it takes, in bytes.
