@@ -7,6 +7,7 @@ use std::{env, fs};
 fn main() {
     println!("cargo::rerun-if-env-changed=STUDENT_T_HEADERS");
     println!("cargo::rerun-if-changed=src/lookups.c");
+    println!("cargo::rerun-if-changed=src/materials.c");
     let folder =
         PathBuf::from(env::var_os("STUDENT_T_HEADERS").expect("STUDENT_T_HEADERS: a folder"));
     println!("cargo::rerun-if-changed={}", folder.display());
@@ -42,6 +43,7 @@ fn main() {
             build.flag("-xc++");
         }
         build.define("PREFIX", prefix).includes([&folder, &out]).file("src/lookups.c");
+        build.file("src/materials.c");
         build.compile(&format!("{prefix}lookups"));
     }
 }
