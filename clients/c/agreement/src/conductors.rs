@@ -1,7 +1,7 @@
 //! Compares conductors at a hit with the crate's.
 //!
-//! Headers of one γ hold the exact curve of E. f is that of the crate's [`Conductor`] compensated by
-//! that curve. The crate's conductors at a hit draw light of further bounces from a density in
+//! Headers of one γ hold the exact curve of E. f is that of the crate's [`Conductor`] compensated
+//! by that curve. The crate's conductors at a hit draw light of further bounces from a density in
 //! closed form, which is written down once more here, in double precision; those conductors
 //! themselves, whose E is an approximation, are compared where it is good.
 
