@@ -9,6 +9,7 @@ fn main() {
     println!("cargo::rerun-if-changed=src/lookups.c");
     println!("cargo::rerun-if-changed=src/families.c");
     println!("cargo::rerun-if-changed=src/interfaces.c");
+    println!("cargo::rerun-if-changed=src/materials.c");
     let folder =
         PathBuf::from(env::var_os("STUDENT_T_HEADERS").expect("STUDENT_T_HEADERS: a folder"));
     println!("cargo::rerun-if-changed={}", folder.display());
@@ -58,7 +59,9 @@ fn main() {
             build.flag("-xc++");
         }
         build.define("PREFIX", prefix).includes([&folder, &out]);
-        build.files(["src/lookups.c", "src/families.c", "src/interfaces.c"]);
+        build.files(
+            ["lookups", "families", "interfaces", "materials"].map(|name| format!("src/{name}.c")),
+        );
         build.compile(&format!("{prefix}lookups"));
     }
 }
