@@ -168,6 +168,11 @@ fn apart(a: [f32; 3], b: [f64; 3]) -> f64 {
     if a.iter().any(|x| x.is_nan()) { f64::INFINITY } else { apart(0).max(apart(1)).max(apart(2)) }
 }
 
+/// How far rounding moves a light whose cosine squared has the digits of single precision.
+fn near_normal([x, y, _]: [f64; 3]) -> f64 {
+    2e-6 / x.hypot(y).max(1e-3)
+}
+
 fn mean(x: [f32; 3]) -> f64 {
     x.map(f64::from).iter().sum::<f64>() / 3.0
 }
@@ -246,13 +251,22 @@ impl<'a> Surface<'a> {
             [1.0; 3]
         };
         // How exact the factor, the broad lobe over cos/pi and the density are.
+        let bounces_off = 4e-5 / (1.0 - lost).max(1e-6);
         let factor_off = 3e-6 / (1.0 - lost_v).max(1e-3).powi(2);
         let lost_at = |l: [f32; 3]| f64::from(albedo.lost(l));
         let broad_off = |l: [f32; 3]| {
             let (a, b) = (lost_v, lost_at(l));
-            if is_broad { ((a + b) * 3e-6 + a * b * 4e-5 / lost) / lost } else { 0.0 }
+            if is_broad {
+                ((a + b) * 3e-6 + a * b * (4e-5 / lost + bounces_off)) / lost
+            } else {
+                0.0
+            }
         };
-        let density_off = if is_broad { 1e-4 + 5e-6 / lost_v.max(1e-30) } else { 0.0 };
+        let density_off = if is_broad {
+            1e-4 + 5e-6 / lost_v.max(1e-30) + 5e-6 / (1.0 - lost_v).max(1e-6) + bounces_off
+        } else {
+            0.0
+        };
         let log_off = |pdf: f64| {
             let d = pdf * 4.0 * f64::from(v[2]);
             1e-5 + 4e-6 * (d.max(1e-38) * self.sigmas[0] * self.sigmas[1]).ln().abs()
@@ -316,6 +330,7 @@ impl<'a> Surface<'a> {
             if round && l_good && v[2] > 0.02 && l[2] > 0.02 && lost > 1e-2 && lost_v > 1e-2 {
                 let (f, pdf) = hit.eval_pdf(v, l, Transport::Radiance);
                 let difference = f64::from(answer.density - pdf).abs() / f64::from(pdf);
+                let difference = if pdf > 1e-30 { difference } else { 0.0 };
                 worst.see("density of the family", difference, 3e-3 + 2e-3 / lost_v);
                 let off = (lost_v + lost_at(l)) * 1.5e-3 / lost * FRAC_1_PI;
                 let off = if is_broad { off } else { 0.0 };
@@ -331,7 +346,11 @@ impl<'a> Surface<'a> {
                     let light = hit.sample(v, point.choice, u, Transport::Radiance);
                     if let Some(light) = light {
                         let want = light.l.map(f64::from);
-                        worst.see("light of the family", apart(answer.light, want), 2e-5);
+                        worst.see(
+                            "light of the family",
+                            apart(answer.light, want),
+                            2e-5 + near_normal(want),
+                        );
                     }
                 }
             }
@@ -369,7 +388,7 @@ impl<'a> Surface<'a> {
         } else {
             let light = self.grazing.sample(u);
             if answer.event == 1 {
-                worst.see("light of further bounces", apart(l, light), 5e-6);
+                worst.see("light of further bounces", apart(l, light), 5e-6 + near_normal(light));
             } else {
                 worst.see("on the horizon", light[2], 1e-6);
             }
