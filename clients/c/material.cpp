@@ -43,8 +43,8 @@ int main()
         const hit here{sigma, {0.8f, 0.0f, -0.6f}, {0.0f, 1.0f, 0.0f}, {0.6f, 0.0f, 0.8f}};
         const vec v = here.local({0.96f, 0.0f, 0.28f});
         /* The material, from the texture's sigma: this is all that is made at a hit. */
-        const student_t::conductor gold(student_t_gamma_3_lobe(here.sigma, here.sigma),
-                                        student_t_gold);
+        const student_t_lobe lobe = student_t_gamma_3_lobe(here.sigma, here.sigma);
+        const student_t::conductor gold(lobe, student_t_gold);
         std::array<double, 3> seen{};
         for (int i = 0; i < paths; ++i) {
             /* Towards the lamp. */

@@ -8,6 +8,7 @@ fn main() {
     println!("cargo::rerun-if-env-changed=STUDENT_T_HEADERS");
     println!("cargo::rerun-if-changed=src/lookups.c");
     println!("cargo::rerun-if-changed=src/interfaces.c");
+    println!("cargo::rerun-if-changed=src/materials.c");
     let folder =
         PathBuf::from(env::var_os("STUDENT_T_HEADERS").expect("STUDENT_T_HEADERS: a folder"));
     println!("cargo::rerun-if-changed={}", folder.display());
@@ -57,7 +58,7 @@ fn main() {
             build.flag("-xc++");
         }
         build.define("PREFIX", prefix).includes([&folder, &out]);
-        build.files(["src/lookups.c", "src/interfaces.c"]);
+        build.files(["src/lookups.c", "src/materials.c", "src/interfaces.c"]);
         build.compile(&format!("{prefix}lookups"));
     }
 }

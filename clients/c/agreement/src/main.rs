@@ -2,8 +2,10 @@
 //! corners, and with the rows of `docs/reference.csv`; then times both in turns.
 //!
 //! `clients/c/run` exports the shapes and starts this program with the number of random points and
-//! the path of the rows as arguments, and with that of the set whose dielectrics were exported. Exit status 1 if something differs by more than is allowed.
+//! the path of the rows as arguments, and with that of the set whose dielectrics were exported. Exit
+//! status 1 if something differs by more than is allowed.
 
+mod conductors;
 mod foreign;
 mod interfaces;
 mod timing;
@@ -40,6 +42,7 @@ fn main() -> ExitCode {
     let (tables, gammas) = (Tables::embedded(), foreign::gammas());
     let good = agree(&mut foreign::Compiled, &LIMITS, &gammas, count, reference);
     let good = interfaces::agree(&gammas, count, glass) & good;
+    let good = good & conductors::agree(&gammas, count.div_ceil(4));
     println!("times in relation to the crate's, sigma 0.5");
     for gamma in [3.0, 1.65, 2.0] {
         if let Some(shape) = gammas.iter().position(|&g| g == gamma) {

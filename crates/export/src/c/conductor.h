@@ -255,9 +255,9 @@ student_t_impl_mixture_weight(const student_t_impl_mixture *m, float weight[STUD
  * 1982, doi:10.1145/357290.357293), drawn by visible normals, with a weight of at most 1. A
  * compensation adds the light of further bounces. Black from below. */
 
-/* A conductor at a hit; it holds no memory, and points to the tables of its lobe alone. */
+/* A conductor at a hit; it holds no memory, and points to its lobe, which must live as long. */
 typedef struct student_t_conductor {
-    student_t_lobe lobe;
+    const student_t_lobe *lobe;
     student_t_reflectance reflectance;
     enum student_t_masking masking;
     int is_smooth; /* a mirror */
@@ -275,7 +275,7 @@ STUDENT_T_FUNCTION void student_t_impl_compensate(student_t_conductor *c)
 {
     const student_t_reflectance *r = &c->reflectance;
     int i;
-    c->albedo = student_t_impl_albedo_of(&c->lobe, c->masking);
+    c->albedo = student_t_impl_albedo_of(c->lobe, c->masking);
     if (c->compensation == STUDENT_T_TURQUIN) {
         for (i = 0; i < STUDENT_T_CHANNELS; ++i) {
             c->bounces[i] = r->a[i];
@@ -291,18 +291,26 @@ STUDENT_T_FUNCTION void student_t_impl_compensate(student_t_conductor *c)
         c->multiple += c->bounces[i] / STUDENT_T_IMPL_CAST(float, STUDENT_T_CHANNELS);
         c->single += r->average[i] / STUDENT_T_IMPL_CAST(float, STUDENT_T_CHANNELS);
     }
-    c->grazing = student_t_impl_grazing_of(student_t_impl_reach(&c->lobe));
+    c->grazing = student_t_impl_grazing_of(student_t_impl_reach(c->lobe));
 }
 
-/* A conductor of a lobe and the reflectance of its facets, which are copied. Without compensation
- * this is a copy alone; with one it looks up what does not depend on a view. */
+/* A conductor of a lobe, which is pointed to, and the reflectance of its facets, which is copied.
+ * Without compensation this is a copy alone; with one it looks up what does not depend on a view.
+ * Members are copied one by one: compilers copy a struct in blocks, wait until each member that was
+ * just written is in memory, and take it for memory from then on. */
 STUDENT_T_FUNCTION student_t_conductor student_t_conductor_at(
     const student_t_lobe *lobe, const student_t_reflectance *reflectance,
     enum student_t_masking masking, enum student_t_compensation_form compensation)
 {
     student_t_conductor c;
-    c.lobe = *lobe;
-    c.reflectance = *reflectance;
+    int i;
+    c.lobe = lobe;
+    c.reflectance.form = reflectance->form;
+    for (i = 0; i < STUDENT_T_CHANNELS; ++i) {
+        c.reflectance.a[i] = reflectance->a[i];
+        c.reflectance.b[i] = reflectance->b[i];
+        c.reflectance.average[i] = reflectance->average[i];
+    }
     c.masking = masking;
     c.is_smooth = student_t_effectively_smooth(lobe);
     c.compensation = c.is_smooth ? STUDENT_T_SINGLE_BOUNCE : compensation;
@@ -373,7 +381,7 @@ STUDENT_T_FUNCTION student_t_sample student_t_conductor_sample(const student_t_c
         return s;
     }
     if (c->compensation == STUDENT_T_SINGLE_BOUNCE) {
-        if (!student_t_impl_draw(&c->lobe, c->masking, v, u, s.m, s.l, &white))
+        if (!student_t_impl_draw(c->lobe, c->masking, v, u, s.m, s.l, &white))
             return student_t_impl_absorbed();
         student_t_reflectance_at(&c->reflectance, white.cosine, s.weight);
         for (i = 0; i < STUDENT_T_CHANNELS; ++i) s.weight[i] *= white.weight;
@@ -382,13 +390,13 @@ STUDENT_T_FUNCTION student_t_sample student_t_conductor_sample(const student_t_c
         const float lost = student_t_impl_lost(&c->albedo, v[2]);
         student_t_impl_mixture mixture;
         if (student_t_impl_choice(choice) < student_t_impl_conductor_share(c, lost)) {
-            if (!student_t_impl_draw(&c->lobe, c->masking, v, u, s.m, s.l, &white))
+            if (!student_t_impl_draw(c->lobe, c->masking, v, u, s.m, s.l, &white))
                 return student_t_impl_absorbed();
         } else {
             float scale;
             student_t_impl_grazing_sample(&c->grazing, u, s.l);
             if (!(s.l[2] > 0.0f)) return student_t_impl_absorbed();
-            white = student_t_impl_halfway(&c->lobe, c->masking, v, s.l, s.m);
+            white = student_t_impl_halfway(c->lobe, c->masking, v, s.l, s.m);
             scale = 0.5f / student_t_impl_max(white.cosine, 1e-19f); /* 1/|v + l| */
             for (i = 0; i < 3; ++i) s.m[i] *= scale;
         }
@@ -411,7 +419,7 @@ STUDENT_T_FUNCTION float student_t_conductor_eval_pdf(const student_t_conductor 
     for (i = 0; i < STUDENT_T_CHANNELS; ++i) f[i] = 0.0f;
     if (c->is_smooth || !(v[2] > 0.0f && l[2] > 0.0f)) return 0.0f;
     if (!(student_t_impl_is_direction(v) && student_t_impl_is_direction(l))) return 0.0f;
-    white = student_t_impl_halfway(&c->lobe, c->masking, v, l, m);
+    white = student_t_impl_halfway(c->lobe, c->masking, v, l, m);
     inverse = student_t_impl_inverse_cosine(l[2]);
     if (c->compensation == STUDENT_T_SINGLE_BOUNCE) {
         const float all = student_t_impl_f(white.weight, white.pdf, inverse);

@@ -622,9 +622,10 @@ STUDENT_T_FUNCTION void student_t_interface_shares(const student_t_interface_tab
  * unbiased, as for a mirror. Of light transmitted at 50 degrees into glass (eta 1.5, sigma 0.3)
  * that is 94 % at gamma 1.501, 12 % at 1.55, 0.65 % at 1.65 and 0.02 % at 1.8. */
 
-/* A dielectric at a hit. It holds no memory, and points to the tables of its lobe and index. */
+/* A dielectric at a hit. It points to its lobe, which must stay where it is, and to the tables of
+ * its index. */
 typedef struct student_t_dielectric {
-    student_t_lobe lobe;
+    const student_t_lobe *lobe;
     float eta; /* inside over outside */
     enum student_t_masking masking;
     int is_smooth; /* all events are deltas */
@@ -640,7 +641,7 @@ STUDENT_T_FUNCTION student_t_dielectric student_t_dielectric_at(const student_t_
                                                                 enum student_t_masking masking)
 {
     student_t_dielectric d;
-    d.lobe = *lobe;
+    d.lobe = lobe;
     d.eta = student_t_impl_index(eta);
     d.masking = masking;
     d.is_smooth = d.eta == 1.0f || student_t_effectively_smooth(lobe);
@@ -709,12 +710,12 @@ student_t_impl_sent(const student_t_dielectric *d, const student_t_impl_seen *se
         opposite[0] = -l[0];
         opposite[1] = -l[1];
         opposite[2] = -l[2];
-        facet = student_t_impl_facet_of(&d->lobe, seen->v, s->m, length2, opposite, d->masking);
+        facet = student_t_impl_facet_of(d->lobe, seen->v, s->m, length2, opposite, d->masking);
         part.weight = facet.weight * factor * scale;
         part.pdf = student_t_impl_finite(s->transmittance * s->jacobian * facet.density);
     } else {
         const float cosine = student_t_impl_min(student_t_impl_dot(seen->v, s->m), 1.0f);
-        facet = student_t_impl_facet_of(&d->lobe, seen->v, s->m, length2, l, d->masking);
+        facet = student_t_impl_facet_of(d->lobe, seen->v, s->m, length2, l, d->masking);
         part.weight = facet.weight * factor;
         part.pdf = 0.25f * facet.density * student_t_fresnel_dielectric(seen->eta, cosine);
     }
@@ -818,7 +819,7 @@ STUDENT_T_FUNCTION student_t_sample student_t_dielectric_sample(const student_t_
             for (i = 0; i < 3; ++i) l[i] = -l[i];
         has_facet = student_t_impl_between(d, &seen, l, &s);
     } else {
-        if (!d->is_smooth) student_t_lobe_sample_visible_normal(&d->lobe, seen.v, u, s.m);
+        if (!d->is_smooth) student_t_lobe_sample_visible_normal(d->lobe, seen.v, u, s.m);
         if (!student_t_impl_send(&seen, choice, &s, l)) return sample;
     }
     sample.is_delta = d->is_smooth;

@@ -2,7 +2,8 @@
  *
  * student_t.hpp: the materials of student_t_materials.h for C++17, with vectors of your own.
  *
- *     const student_t::conductor gold(student_t_gamma_3_lobe(0.3f, 0.3f), student_t_gold);
+ *     const student_t_lobe lobe = student_t_gamma_3_lobe(0.3f, 0.3f);
+ *     const student_t::conductor gold(lobe, student_t_gold); // points to the lobe
  *     const auto s = gold.sample(v, choice, u); // v: anything with [0], [1], [2]; u: with [0], [1]
  *     if (s) { throughput *= s.weight; direction = s.l; }
  *     const auto [f, pdf] = gold.eval_pdf(v, l);
@@ -65,8 +66,7 @@ template <class Material> class material {
     {
         const float numbers[2] = {static_cast<float>(u[0]), static_cast<float>(u[1])};
         const student_t_sample s = self().draw(direction(v).w, choice, numbers, transport);
-        sampled<V> made{s.event,         s.is_delta != 0, vector<V>(s.l), vector<V>(s.m),
-                        spectrum{}, s.pdf,           s.eta};
+        sampled<V> made{s.event, s.is_delta != 0, vector<V>(s.l), vector<V>(s.m), {}, s.pdf, s.eta};
         for (std::size_t i = 0; i < made.weight.size(); ++i) made.weight[i] = s.weight[i];
         return made;
     }
@@ -91,7 +91,7 @@ template <class Material> class material {
 
 } // namespace impl
 
-/* student_t_conductor at a hit. */
+/* student_t_conductor at a hit; the lobe must live as long. */
 struct conductor : impl::material<conductor> {
     student_t_conductor c;
 
@@ -101,6 +101,9 @@ struct conductor : impl::material<conductor> {
         : c(student_t_conductor_at(&lobe, &reflectance, masking, compensation))
     {
     }
+    conductor(const student_t_lobe &&, const student_t_reflectance &,
+              student_t_masking = STUDENT_T_HEIGHT_CORRELATED,
+              student_t_compensation_form = STUDENT_T_KULLA_CONTY) = delete;
     student_t_sample draw(const float *v, float choice, const float *u, student_t_transport) const
     {
         return student_t_conductor_sample(&c, v, choice, u);
@@ -111,7 +114,7 @@ struct conductor : impl::material<conductor> {
     }
 };
 
-/* student_t_dielectric at a hit: of one bounce, or by the table of an index. */
+/* student_t_dielectric at a hit: of one bounce, or by the table of an index. Points to the lobe. */
 struct dielectric : impl::material<dielectric> {
     student_t_dielectric d;
 
@@ -136,7 +139,7 @@ struct dielectric : impl::material<dielectric> {
     }
 };
 
-/* student_t_plastic at a hit. */
+/* student_t_plastic at a hit; points to the lobe. */
 struct plastic : impl::material<plastic> {
     student_t_plastic p;
 
