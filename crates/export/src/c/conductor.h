@@ -162,13 +162,6 @@ typedef struct student_t_impl_grazing {
     float scale;   /* what makes the density one in total */
 } student_t_impl_grazing;
 
-/* Within about how much of the horizon a lobe loses light, as a cosine. */
-STUDENT_T_FUNCTION float student_t_impl_reach(const student_t_lobe *lobe)
-{
-    const float sigma = sqrtf(lobe->sigma_x * lobe->sigma_y);
-    return sigma + sigma / (6.0f * (2.0f * lobe->gamma - 3.0f));
-}
-
 STUDENT_T_FUNCTION student_t_impl_grazing student_t_impl_grazing_of(float reach)
 {
     student_t_impl_grazing g;
@@ -291,7 +284,7 @@ STUDENT_T_FUNCTION void student_t_impl_compensate(student_t_conductor *c)
         c->multiple += c->bounces[i] / STUDENT_T_IMPL_CAST(float, STUDENT_T_CHANNELS);
         c->single += r->average[i] / STUDENT_T_IMPL_CAST(float, STUDENT_T_CHANNELS);
     }
-    c->grazing = student_t_impl_grazing_of(student_t_impl_reach(c->lobe));
+    c->grazing = student_t_impl_grazing_of(student_t_impl_reach(&c->albedo));
 }
 
 /* A conductor of a lobe, which is pointed to, and the reflectance of its facets, which is copied.

@@ -4,23 +4,6 @@
  * outside, n_i/n_o; of a view it is that of the far side over that of the side of the view. Cosines
  * are between a direction and the normal of a facet. */
 
-/* A conversion, as each language has it. */
-#ifndef STUDENT_T_IMPL_CAST
-#ifdef __cplusplus
-#define STUDENT_T_IMPL_CAST(type, x) static_cast<type>(x)
-#else
-#define STUDENT_T_IMPL_CAST(type, x) ((type)(x))
-#endif
-#endif
-
-#ifndef STUDENT_T_IMPL_NULL
-#ifdef __cplusplus
-#define STUDENT_T_IMPL_NULL nullptr
-#else
-#define STUDENT_T_IMPL_NULL 0
-#endif
-#endif
-
 /* eta as materials take it: at the nearer end of [1e-3, 1e3], NaN at 1, and 1 within 1e-5 of it,
  * where single precision does not tell refracted light from what goes straight on. */
 STUDENT_T_FUNCTION float student_t_impl_index(float eta)
@@ -252,7 +235,7 @@ STUDENT_T_FUNCTION void student_t_impl_few(float x, int n, float weights[6])
 
 /* The nodes about a place among n even ones, from 0 at the first to 1 at the last; returns the
  * first, and how many are read. */
-STUDENT_T_FUNCTION int student_t_impl_nodes(float place, int n, float weights[6], int *count)
+STUDENT_T_FUNCTION int student_t_impl_places(float place, int n, float weights[6], int *count)
 {
     const float x = place * STUDENT_T_IMPL_CAST(float, n - 1);
     *count = n < 6 ? n : 6;
@@ -470,13 +453,13 @@ student_t_impl_energy_of(const student_t_interface_table *t, const student_t_lob
     e.sigma = student_t_impl_min(e.sigma, t->sigma_max);
     at = t->shapes > 1 ? log1pf(t->shape_scale / (2.0f * e.gamma - 3.0f)) - t->shape_first : 0.0f;
     if (t->shapes > 1) at /= t->shape_range;
-    e.shape = student_t_impl_nodes(at, t->shapes, e.shape_weights, &e.shape_nodes);
+    e.shape = student_t_impl_places(at, t->shapes, e.shape_weights, &e.shape_nodes);
     at = 0.0f;
     if (t->sigmas > 1)
         at = (log1pf(e.sigma / t->offset) + t->slow * logf(e.sigma / t->first) +
               t->linear * e.sigma - t->sigma_first) /
              t->sigma_range;
-    e.roughness = student_t_impl_nodes(at, t->sigmas, e.sigma_weights, &e.sigma_nodes);
+    e.roughness = student_t_impl_places(at, t->sigmas, e.sigma_weights, &e.sigma_nodes);
     e.nearest =
         (e.shape + student_t_impl_largest(e.shape_weights, e.shape_nodes)) * t->sigmas +
         e.roughness + student_t_impl_largest(e.sigma_weights, e.sigma_nodes);
@@ -622,9 +605,10 @@ STUDENT_T_FUNCTION void student_t_interface_shares(const student_t_interface_tab
  * unbiased, as for a mirror. Of light transmitted at 50 degrees into glass (eta 1.5, sigma 0.3)
  * that is 94 % at gamma 1.501, 12 % at 1.55, 0.65 % at 1.65 and 0.02 % at 1.8. */
 
-/* A dielectric at a hit. It holds no memory, and points to the tables of its lobe and index. */
+/* A dielectric at a hit. It points to its lobe, which must stay where it is, and to the tables of
+ * its index. */
 typedef struct student_t_dielectric {
-    student_t_lobe lobe;
+    const student_t_lobe *lobe;
     float eta; /* inside over outside */
     enum student_t_masking masking;
     int is_smooth; /* all events are deltas */
@@ -640,7 +624,7 @@ STUDENT_T_FUNCTION student_t_dielectric student_t_dielectric_at(const student_t_
                                                                 enum student_t_masking masking)
 {
     student_t_dielectric d;
-    d.lobe = *lobe;
+    d.lobe = lobe;
     d.eta = student_t_impl_index(eta);
     d.masking = masking;
     d.is_smooth = d.eta == 1.0f || student_t_effectively_smooth(lobe);
@@ -709,12 +693,12 @@ student_t_impl_sent(const student_t_dielectric *d, const student_t_impl_seen *se
         opposite[0] = -l[0];
         opposite[1] = -l[1];
         opposite[2] = -l[2];
-        facet = student_t_impl_facet_of(&d->lobe, seen->v, s->m, length2, opposite, d->masking);
+        facet = student_t_impl_facet_of(d->lobe, seen->v, s->m, length2, opposite, d->masking);
         part.weight = facet.weight * factor * scale;
         part.pdf = student_t_impl_finite(s->transmittance * s->jacobian * facet.density);
     } else {
         const float cosine = student_t_impl_min(student_t_impl_dot(seen->v, s->m), 1.0f);
-        facet = student_t_impl_facet_of(&d->lobe, seen->v, s->m, length2, l, d->masking);
+        facet = student_t_impl_facet_of(d->lobe, seen->v, s->m, length2, l, d->masking);
         part.weight = facet.weight * factor;
         part.pdf = 0.25f * facet.density * student_t_fresnel_dielectric(seen->eta, cosine);
     }
@@ -723,7 +707,7 @@ student_t_impl_sent(const student_t_dielectric *d, const student_t_impl_seen *se
 
 /* The facet between a view and a light as seen from above; returns 0 if there is none, or if it is
  * only sampled. */
-STUDENT_T_FUNCTION int student_t_impl_between(const student_t_dielectric *d,
+STUDENT_T_FUNCTION int student_t_impl_sender_of(const student_t_dielectric *d,
                                               const student_t_impl_seen *seen, const float l[3],
                                               student_t_impl_sender *s)
 {
@@ -816,9 +800,9 @@ STUDENT_T_FUNCTION student_t_sample student_t_dielectric_sample(const student_t_
         if (!(l[2] > 0.0f)) return sample;
         if (!is_reflected)
             for (i = 0; i < 3; ++i) l[i] = -l[i];
-        has_facet = student_t_impl_between(d, &seen, l, &s);
+        has_facet = student_t_impl_sender_of(d, &seen, l, &s);
     } else {
-        if (!d->is_smooth) student_t_lobe_sample_visible_normal(&d->lobe, seen.v, u, s.m);
+        if (!d->is_smooth) student_t_lobe_sample_visible_normal(d->lobe, seen.v, u, s.m);
         if (!student_t_impl_send(&seen, choice, &s, l)) return sample;
     }
     sample.is_delta = d->is_smooth;
@@ -831,7 +815,7 @@ STUDENT_T_FUNCTION student_t_sample student_t_dielectric_sample(const student_t_
         if (is_facet && d->has_pole && s.refracts &&
             s.m[2] < 2.0f * student_t_steep_cosine(seen.eta)) {
             student_t_impl_sender found;
-            if (student_t_impl_between(d, &seen, l, &found)) {
+            if (student_t_impl_sender_of(d, &seen, l, &found)) {
                 s = found;
             } else {
                 sample.is_delta = 1;
@@ -880,7 +864,7 @@ STUDENT_T_FUNCTION float student_t_dielectric_eval_pdf(const student_t_dielectri
     shares = student_t_impl_account(d, &seen);
     scale = student_t_impl_scale(&seen, transport);
     part.weight = part.pdf = 0.0f;
-    if (student_t_impl_between(d, &seen, there, &s))
+    if (student_t_impl_sender_of(d, &seen, there, &s))
         part = student_t_impl_sent(d, &seen, &s, there, scale, shares.factor);
     value = student_t_impl_part_f(part, l[2]);
     if (shares.returned > 0.0f) {

@@ -34,15 +34,6 @@
 #error "student_t.h is of another version than student_t_materials.h: export both again"
 #endif
 
-/* A conversion, which C++ spells without a cast of C. */
-#ifndef STUDENT_T_IMPL_CAST
-#ifdef __cplusplus
-#define STUDENT_T_IMPL_CAST(type, x) static_cast<type>(x)
-#else
-#define STUDENT_T_IMPL_CAST(type, x) ((type)(x))
-#endif
-#endif
-
 /* The channels of weights and reflectances; define it beforehand to have another number. */
 #ifndef STUDENT_T_CHANNELS
 #define STUDENT_T_CHANNELS 3

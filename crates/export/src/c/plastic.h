@@ -11,9 +11,9 @@
  * needs the table of its index, also for a coat of one bounce. With compensation a white base
  * returns all light. */
 
-/* A plastic at a hit. */
+/* A plastic at a hit. It points to its lobe, which must stay where it is. */
 typedef struct student_t_plastic {
-    student_t_lobe lobe; /* of the coat */
+    const student_t_lobe *lobe; /* of the coat */
     float eta;           /* of the coat, inside over outside */
     enum student_t_masking masking;
     int is_smooth;       /* the coat's reflection is a delta */
@@ -42,7 +42,7 @@ student_t_plastic_at(const student_t_lobe *lobe, const student_t_interface_table
         e.compensation == STUDENT_T_KULLA_CONTY ? e.reflected[0] * e.lost[0] : 0.0f;
     float sum = 0.0f;
     int i;
-    p.lobe = *lobe;
+    p.lobe = lobe;
     p.eta = table->eta;
     p.masking = table->masking;
     p.is_smooth = table->eta == 1.0f || student_t_effectively_smooth(lobe);
@@ -82,7 +82,7 @@ student_t_impl_coat(const student_t_plastic *p, const student_t_impl_shares *s, 
 {
     student_t_impl_part part;
     const student_t_impl_facet facet =
-        student_t_impl_facet_of(&p->lobe, v, m, length2, l, p->masking);
+        student_t_impl_facet_of(p->lobe, v, m, length2, l, p->masking);
     part.weight = facet.weight * s->factor *
                   student_t_fresnel_dielectric(p->eta, student_t_impl_min(cosine, 1.0f));
     part.pdf = 0.25f * facet.density;
@@ -151,7 +151,7 @@ STUDENT_T_FUNCTION student_t_sample student_t_plastic_sample(const student_t_pla
     }
     if (is_facet) {
         float facing, length2, twice;
-        student_t_lobe_sample_visible_normal(&p->lobe, v, u, m);
+        student_t_lobe_sample_visible_normal(p->lobe, v, u, m);
         facing = student_t_impl_dot(v, m);
         length2 = student_t_impl_dot(m, m);
         twice = 2.0f * facing / length2;

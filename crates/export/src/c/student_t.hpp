@@ -114,7 +114,7 @@ struct conductor : impl::material<conductor> {
     }
 };
 
-/* student_t_dielectric at a hit: of one bounce, or by the table of an index. */
+/* student_t_dielectric at a hit: of one bounce, or by the table of an index. Points to the lobe. */
 struct dielectric : impl::material<dielectric> {
     student_t_dielectric d;
 
@@ -139,7 +139,7 @@ struct dielectric : impl::material<dielectric> {
     }
 };
 
-/* student_t_plastic at a hit. */
+/* student_t_plastic at a hit; points to the lobe. */
 struct plastic : impl::material<plastic> {
     student_t_plastic p;
 
