@@ -66,10 +66,13 @@ STUDENT_T_FUNCTION int student_t_impl_three(float x, float weights[3])
 STUDENT_T_FUNCTION student_t_impl_albedo
 student_t_impl_albedo_of(const student_t_lobe *lobe, enum student_t_masking masking)
 {
-    student_t_impl_albedo a;
+    /* What the other kind of tables needs stays 0: compilers warn of copies of what is not set. */
+    student_t_impl_albedo a = {masking, 0.0f, 0.0f, STUDENT_T_IMPL_NULL, 0.0f, 0.0f, 0,
+                               {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f}, STUDENT_T_IMPL_NULL,
+                               STUDENT_T_IMPL_NULL, {0, 0}, {0.0f, 0.0f, 0.0f},
+                               {0.0f, 0.0f, 0.0f}};
     const int form = masking == STUDENT_T_UNCORRELATED ? 0 : 1;
     const float stand_in = sqrtf(lobe->sigma_x * lobe->sigma_y);
-    a.masking = masking;
     a.less = student_t_impl_min(2.0f * lobe->gamma - 3.0f, 1e30f);
     if (lobe->family) {
         const student_t_volume *t = &lobe->family->albedo[form];
@@ -78,7 +81,6 @@ student_t_impl_albedo_of(const student_t_lobe *lobe, enum student_t_masking mask
         const float octaves = student_t_impl_octaves(s);
         const float shape = sqrtf(sqrtf(d / (d + 3.0f)));
         const float sigma = student_t_impl_octaves(1.0f + 60.0f * s) + 0.2f * octaves + s;
-        a.table = STUDENT_T_IMPL_NULL;
         a.family = lobe->family;
         a.volume = t;
         a.less = d;
