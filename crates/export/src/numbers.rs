@@ -33,9 +33,14 @@ fn shortest(plain: String, scientific: String) -> String {
 
 /// Items with a comma after each, in lines.
 pub(super) fn lines(items: impl IntoIterator<Item = String>) -> String {
+    wide_lines(items, WIDTH)
+}
+
+/// The same in lines of a width; C promises to read 4095 characters.
+pub(super) fn wide_lines(items: impl IntoIterator<Item = String>, width: usize) -> String {
     let (mut text, mut column) = (String::new(), 0);
     for item in items {
-        if column + item.len() + 1 > WIDTH {
+        if column + item.len() + 1 > width {
             text.push('\n');
             column = 0;
         }

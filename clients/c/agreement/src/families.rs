@@ -82,7 +82,7 @@ fn answers(hits: &[Hit]) -> [Vec<At>; 2] {
 
 /// What C may differ by: G1 and what follows from it, from the crate's family and from the model;
 /// densities; E, other moments, and the averages of both.
-const SHARE: f64 = 4e-6;
+const SHARE: f64 = 5e-6;
 const EXACT: f64 = 1e-5;
 const DENSITY: f64 = 3e-5;
 const ALBEDO: f64 = 2.5e-4;
@@ -251,7 +251,8 @@ fn normal(
         let ends = [u[axis] - NUMBER, u[axis] + NUMBER];
         let [low, high] = ends.map(with);
         // The parts of the distribution of a small gamma are one above the other, not in order.
-        if !(low <= high) {
+        let within = with(u[axis]);
+        if !(low <= within && within <= high) {
             continue;
         }
         // No number is beyond 0 and 1, and so no end to what is next to them.
@@ -261,7 +262,7 @@ fn normal(
         // Coordinates of normals have single precision, and so has a slope beside a much larger
         // one, which strong anisotropy turns.
         let [x, y] = hit.sigma.map(f64::from);
-        let allowed = 1e-6 * (x / y).max(y / x) * (1.0 + length);
+        let allowed = 2e-6 * (x / y).max(y / x) * (1.0 + length);
         seen.see(["normal, along", "normal, across"][axis], outside, allowed, hit);
     }
 }

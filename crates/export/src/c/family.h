@@ -176,30 +176,44 @@ STUDENT_T_FUNCTION float student_t_impl_across_at(const student_t_lobe *lobe, in
     return student_t_impl_cubic(lobe->shape->across + 4 * cell, w);
 }
 
+/* Value and slope at a node of a row of slopes and at the next, of a family. */
+STUDENT_T_FUNCTION void
+student_t_impl_row(const student_t_lobe *lobe, int row, int column, float nodes[4])
+{
+    const student_t_part *part = lobe->part;
+    const int numbers = 2 * lobe->constants->numbers, step = 2 * part->shapes[0];
+    const unsigned short *codes = student_t_impl_codes(lobe->family, part->slopes) +
+                                  (row * numbers + column) * step + 2 * lobe->slopes.start;
+    const float *c = student_t_impl_floats(lobe->family, part->columns) +
+                     5 * (row / 16 * (numbers + 1) + column);
+    const float *w = lobe->slopes.weights;
+    int i, j;
+    for (i = 0; i < 2; ++i, codes += step, c += 5) {
+        float squares = 0.0f;
+        if (c[2] > 0.0f) {
+            for (j = 0; j < 4; ++j) {
+                const float code = STUDENT_T_IMPL_CAST(float, codes[2 * j]);
+                squares += w[j] * code * code;
+            }
+        }
+        nodes[2 * i] = c[0] + c[1] * student_t_impl_sum(codes, 2, w) + c[2] * squares;
+        nodes[2 * i + 1] = c[3] + c[4] * student_t_impl_sum(codes + 1, 2, w);
+    }
+}
+
 /* g of the slope in the plane, at a node of a row: linear between the views, a cubic through values
  * and slopes along the number. */
 STUDENT_T_FUNCTION float student_t_impl_along_at(const student_t_lobe *lobe, int row, int half,
                                                  int cell, float between, float w)
 {
     const int numbers = lobe->constants->numbers, column = half * numbers + cell;
-    const int place = 2 * row * numbers + column;
     float nodes[4];
     int i;
     if (lobe->family) {
-        const student_t_part *part = lobe->part;
-        const int step = 2 * part->shapes[0];
-        const unsigned short *low = student_t_impl_codes(lobe->family, part->slopes) +
-                                    place * step + 2 * lobe->slopes.start;
-        const unsigned short *high = low + 2 * numbers * step;
-        const float *columns = student_t_impl_floats(lobe->family, part->columns) + 4 * column;
-        const float *weights = lobe->slopes.weights;
-        float most;
-        for (i = 0; i < 4; ++i) {
-            const int at = (i / 2) * step + i % 2;
-            const float a = student_t_impl_sum(low + at, 2, weights);
-            const float b = student_t_impl_sum(high + at, 2, weights);
-            nodes[i] = columns[2 * i] + columns[2 * i + 1] * (a + between * (b - a));
-        }
+        float high[4], most;
+        student_t_impl_row(lobe, row, column, nodes);
+        student_t_impl_row(lobe, row + 1, column, high);
+        for (i = 0; i < 4; ++i) nodes[i] += between * (high[i] - nodes[i]);
         /* Weights below 0 may take slopes out of the range in which the cubic ascends. */
         most = student_t_impl_max(3.0f * (nodes[2] - nodes[0]), 0.0f);
         nodes[1] = student_t_impl_min(student_t_impl_max(nodes[1], 0.0f), most);
@@ -207,7 +221,8 @@ STUDENT_T_FUNCTION float student_t_impl_along_at(const student_t_lobe *lobe, int
         nodes[0] = student_t_impl_max(nodes[0], 0.0f);
         nodes[2] = student_t_impl_max(nodes[2], 0.0f);
     } else {
-        const float *low = lobe->shape->slopes + 2 * place, *high = low + 4 * numbers;
+        const float *low = lobe->shape->slopes + 2 * (2 * row * numbers + column);
+        const float *high = low + 4 * numbers;
         for (i = 0; i < 4; ++i) nodes[i] = low[i] + between * (high[i] - low[i]);
     }
     return student_t_impl_hermite(nodes, w);

@@ -6,8 +6,11 @@ use microfacet_sampler::port::WindowCell;
 
 use super::{HEADER_NAME, LAYOUT, float, layout_check};
 use crate::family::{Block, Family, Item};
-use crate::numbers::lines;
+use crate::numbers::wide_lines;
 use crate::{ExportFile, numbers};
+
+/// The width of lines of data, of which a hundredth would be ends of lines otherwise.
+const DATA: usize = 4000;
 
 const NAME: &str = "student_t_family";
 
@@ -43,13 +46,13 @@ STUDENT_T_DATA struct {NAME}_tables {NAME}_data = {{
         layout_check(NAME)
     )
     .expect("memory");
-    text.push_str(&lines([head(&block.head)]));
+    text.push_str(&wide_lines([head(&block.head)], DATA));
     text.push_str("\n{\n");
-    text.push_str(&lines(block.windows.iter().flat_map(window)));
+    text.push_str(&wide_lines(block.windows.iter().flat_map(window), DATA));
     text.push_str("\n},\n{\n");
-    text.push_str(&lines(block.numbers.iter().map(|&x| short(x))));
+    text.push_str(&wide_lines(block.numbers.iter().map(|&x| short(x)), DATA));
     text.push_str("\n},\n{\n");
-    text.push_str(&lines(block.codes.iter().map(u16::to_string)));
+    text.push_str(&wide_lines(block.codes.iter().map(u16::to_string), DATA));
     text.push_str(
         "
 }

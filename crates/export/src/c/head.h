@@ -181,7 +181,8 @@ typedef struct student_t_part {
     unsigned cells;          /* student_t_impl_between [] */
     int shapes[3];           /* nodes of gamma: of slopes, of slopes across, of masking */
     unsigned slopes;         /* codes [rows + 2][2][numbers][shapes][2], and a node, as in a shape */
-    unsigned columns;        /* [2][numbers][4], and one more: start and step of values, of slopes */
+    unsigned columns;        /* [][2 numbers + 1][5], for each 16 rows: start, step and square of the
+                              * codes of values, start and step of those of slopes */
     unsigned across;         /* [cells + 2][shapes][2]: value and slope */
     unsigned masking[2];     /* codes of the same, of G1/coordinate/cells, and [cells + 2][2][2]:
                               * their starts and steps */

@@ -4,7 +4,7 @@
 use microfacet_sampler::port::{ByShape, PartTables, VolumeTables, WindowCell};
 
 use super::Family;
-use super::codes::Codes;
+use super::codes::{Codes, Squares};
 
 /// A member of the head, or some in braces.
 #[derive(Clone, Debug)]
@@ -34,17 +34,20 @@ pub(crate) const MAGIC: u32 = u32::from_le_bytes(*b"StuT");
 
 /// What codes may be off by. Slopes are half tangents, whose cumulative distribution changes by up
 /// to three times as much; a cell's slopes weigh 4/27 of its values at most.
-const VALUES: f64 = 1.5e-6;
-/// Of the first nodes of a half, where the tails of grazing views have half tangents of 1e-5.
-const TAIL: (usize, f64) = (4, 2e-7);
-const SLOPES: f64 = 1e-5;
+const VALUES: f64 = 1.3e-6;
+const SLOPES: f64 = 1.4e-5;
+/// The first nodes of a half, of which codes are roots: tails of grazing views have half tangents of
+/// 1e-5.
+const TAIL: usize = 12;
+/// Rows of slopes whose codes have steps in common, as the functions know it.
+const ROWS: usize = 16;
 /// Of G1 over its coordinate, times the number of cells, and of the slopes along it.
 const MASKING: [f64; 2] = [1e-6, 6e-6];
 /// Of areas, as shares of the largest of their γ.
-const AREA: f64 = 1e-6;
+const AREA: f64 = 1.5e-6;
 /// Of sqrt(1 - E), of other moments, and of log2(1 - E_avg).
 const LOST: f64 = 6.8e-5;
-const MOMENTS: f64 = 6.2e-4;
+const MOMENTS: f64 = 7e-4;
 const LOGARITHM: f64 = 2e-4;
 
 impl Block {
@@ -113,29 +116,45 @@ impl Block {
         let (shapes, columns) = (part.slopes.shapes, 2 * part.numbers);
         let values = &part.slopes.values;
         let real = values.len() - (columns + 1) * shapes;
-        let column = |j: usize| {
-            let of = |channel: usize, tolerance: f64| {
-                let places = (j * shapes..real).step_by(columns * shapes);
-                let numbers = places.flat_map(|at| values[at..at + shapes].iter());
-                Codes::of(numbers.map(|value| value[channel]), tolerance)
-            };
-            let is_tail = j % part.numbers < TAIL.0;
-            [of(0, if is_tail { TAIL.1 } else { VALUES }), of(1, SLOPES)]
-        };
-        let of_columns: Vec<[Codes; 2]> = (0..columns).map(column).collect();
+        // By some rows, since those of grazing views have other slopes than those of steep ones.
+        let rows = real / (columns * shapes);
         let slopes = offsets.codes(self.codes.len());
-        for (at, value) in values.iter().enumerate() {
-            let codes = &of_columns[at / shapes % columns];
-            let code = |channel: usize| match at < real {
-                true => codes[channel].code(value[channel]),
-                false => 0,
+        let mut starts = Vec::new();
+        for group in values[..real].chunks(ROWS * columns * shapes) {
+            let column = |j: usize| {
+                let places = (j * shapes..group.len()).step_by(columns * shapes);
+                places.flat_map(|at| group[at..at + shapes].iter())
             };
-            self.codes.extend([0, 1].map(code));
+            let is_tail = |j: usize| j % part.numbers < TAIL;
+            let of_columns: Vec<(Codes, Squares, Codes)> = (0..columns)
+                .map(|j| {
+                    let of = |channel: usize| column(j).map(move |value| value[channel]);
+                    // Slopes of tails are as small as they.
+                    let order = (j % part.numbers + 1) as f64;
+                    let along = Codes::of(of(1), SLOPES.min(3e-8 * order * order));
+                    (Codes::of(of(0), VALUES), Squares::of(of(0)), along)
+                })
+                .collect();
+            for (at, value) in group.iter().enumerate() {
+                let j = at / shapes % columns;
+                let (linear, squares, along) = &of_columns[j];
+                let first = if is_tail(j) { squares.code(value[0]) } else { linear.code(value[0]) };
+                self.codes.extend([first, along.code(value[1])]);
+            }
+            for (j, (linear, squares, along)) in of_columns.iter().enumerate() {
+                let of_values = match is_tail(j) {
+                    true => [squares.start, 0.0, squares.square],
+                    false => [linear.start, linear.step, 0.0],
+                };
+                starts.extend(of_values.into_iter().chain([along.start, along.step]));
+            }
+            starts.extend([0.0; 5]);
         }
-        let columns = self.numbers(
-            offsets,
-            of_columns.iter().flatten().flat_map(|codes| [codes.start, codes.step]).chain([0.0; 4]),
-        );
+        if rows.is_multiple_of(ROWS) {
+            starts.extend(std::iter::repeat_n(0.0, 5 * (columns + 1)));
+        }
+        self.codes.extend(std::iter::repeat_n(0, 2 * (values.len() - real)));
+        let columns = self.numbers(offsets, starts);
         let cells = f64::from(part.masking_cells);
         let masking = self.coded(offsets, &part.masking, MASKING.map(|x| x / cells));
         // Areas over M₀ fall with 2γ − 3: as shares of the largest of their γ they keep their digits.
