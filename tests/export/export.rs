@@ -323,3 +323,29 @@ fn the_data_of_shaders_is_where_its_description_says() {
         assert!((stored - albedo.albedo(Vec3::Z)).abs() < 1e-6, "{gamma}: {stored}");
     }
 }
+
+#[test]
+fn every_shape_is_one_header_or_one_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let family = ["export", "c", "--family", "--out"];
+    ok(at, &[&family[..], &["text"]].concat());
+    ok(at, &[&family[..], &["bare", "--no-albedo"]].concat());
+    ok(at, &[&family[..], &["bytes", "--binary"]].concat());
+    let sizes =
+        ["text/student_t_family.h", "bare/student_t_family.h", "bytes/student_t_family.bin"]
+            .map(|name| fs::read(at.join(name)).unwrap().len());
+    assert!(sizes[0] < 2_530_000 && sizes[1] < sizes[0] * 6 / 10, "{sizes:?}");
+    // The file says its size.
+    let bytes = fs::read(at.join("bytes/student_t_family.bin")).unwrap();
+    let word = |i: usize| u32::from_le_bytes(bytes[4 * i..][..4].try_into().unwrap());
+    assert_eq!(word(0).to_le_bytes(), *b"StuT");
+    assert_eq!(word(2) as usize, bytes.len());
+    for arguments in [["--family", "--gamma", "3"], ["--gamma", "3", "--binary"]] {
+        refused(at, &[&["export", "c", "--out", "out"][..], &arguments].concat());
+    }
+    // One shape without its albedos.
+    ok(at, &["export", "c", "--gamma", "3", "--no-albedo", "--out", "one"]);
+    let one = fs::read_to_string(at.join("one/student_t_gamma_3.h")).unwrap();
+    assert!(arrays(&one).keys().all(|name| !name.contains("albedo")));
+}

@@ -49,7 +49,7 @@ pub(super) struct CArgs {
     #[arg(long, value_name = "N", value_delimiter = ',')]
     eta: Vec<f64>,
     /// Write the tables of the family as a file of bytes, which a program reads, not as text.
-    #[arg(long, requires = "family")]
+    #[arg(long, requires = "family", conflicts_with = "gamma")]
     binary: bool,
     /// Leave out directional albedos, which compensation of multiple scattering needs: about half
     /// of the text.

@@ -4,7 +4,8 @@
 /* Weights of the polynomial through six of n even nodes about x; returns the first of them. */
 STUDENT_T_FUNCTION int student_t_impl_six(float x, int n, float weights[6])
 {
-    const float at = student_t_impl_min(student_t_impl_max(x, 0.0f), STUDENT_T_IMPL_CAST(float, n - 1));
+    const float last = STUDENT_T_IMPL_CAST(float, n - 1);
+    const float at = student_t_impl_min(student_t_impl_max(x, 0.0f), last);
     int start = STUDENT_T_IMPL_CAST(int, at) - 2;
     float a, b, c, d, e, f;
     start = start < n - 6 ? start : n - 6;
@@ -42,7 +43,7 @@ typedef struct student_t_impl_albedo {
     float by_shape[3], by_sigma[3];
 } student_t_impl_albedo;
 
-/* Near log2(x), with a polynomial of the mantissa; nodes are where the same polynomial puts them. */
+/* Near log2(x), by a polynomial of the mantissa; nodes are where the same polynomial puts them. */
 STUDENT_T_FUNCTION float student_t_impl_octaves(float x)
 {
     const int bits = student_t_impl_bits(x);
@@ -76,7 +77,8 @@ student_t_impl_albedo_of(const student_t_lobe *lobe, enum student_t_masking mask
     a.less = student_t_impl_min(2.0f * lobe->gamma - 3.0f, 1e30f);
     if (lobe->family) {
         const student_t_volume *t = &lobe->family->albedo[form];
-        const float s = student_t_impl_min(student_t_impl_max(stand_in, t->sigmas[0]), t->sigmas[1]);
+        const float s =
+            student_t_impl_min(student_t_impl_max(stand_in, t->sigmas[0]), t->sigmas[1]);
         const float d = student_t_impl_min(student_t_impl_max(a.less, t->shapes[0]), t->shapes[1]);
         const float octaves = student_t_impl_octaves(s);
         const float shape = sqrtf(sqrtf(d / (d + 3.0f)));
@@ -187,7 +189,8 @@ STUDENT_T_FUNCTION void student_t_impl_moments_at(const student_t_impl_albedo *a
     const float start = student_t_impl_view(a, a->floor);
     const float at = (student_t_impl_view(a, mu) - start) / (1.0f - start);
     float weights[6], sum[3] = {0.0f, 0.0f, 0.0f}, e, mirror_bias, mirror_f82;
-    const int first = student_t_impl_six(at * STUDENT_T_IMPL_CAST(float, t->views - 1), t->views, weights);
+    const float views = STUDENT_T_IMPL_CAST(float, t->views - 1);
+    const int first = student_t_impl_six(at * views, t->views, weights);
     /* Weights sum to 1: differences from a node in the middle have less to round than values. */
     const float *middle = t->values + 3 * ((a->start + 2) * t->views + first + 2);
     int i, j, k;
@@ -290,8 +293,8 @@ STUDENT_T_FUNCTION void student_t_impl_averages(const student_t_impl_albedo *a, 
         averages[2] = sum[2] + e * averages[2];
         return;
     }
-    i = student_t_impl_six(a->coordinate * STUDENT_T_IMPL_CAST(float, t->average_sigmas - 1), t->average_sigmas,
-                           weights);
+    i = student_t_impl_six(a->coordinate * STUDENT_T_IMPL_CAST(float, t->average_sigmas - 1),
+                           t->average_sigmas, weights);
     node = t->averages + 3 * i;
     averages[0] = averages[1] = averages[2] = 0.0f;
     for (i = 0; i < 6; ++i, node += 3) {

@@ -1,5 +1,5 @@
 
-/* ---- Families: tables of every gamma -----------------------------------------------------------*/
+/* ---- Families: tables of every gamma --------------------------------------------------------- */
 
 /* What "StuT" is in the bytes of a little-endian machine, the only ones that read these files. */
 #define STUDENT_T_FAMILY_MAGIC 0x54757453u
@@ -146,7 +146,7 @@ STUDENT_T_FUNCTION void student_t_impl_decode(const student_t_lobe *lobe, const 
                      columns[2 * i + 1] * student_t_impl_sum(codes + i, count, w);
 }
 
-/* ---- What lookups read, of a shape or of a family ----------------------------------------------*/
+/* ---- What lookups read, of a shape or of a family -------------------------------------------- */
 
 /* G1/coordinate/cells of masking. */
 STUDENT_T_FUNCTION float student_t_impl_masking_at(const student_t_lobe *lobe, int cell, float w)

@@ -180,9 +180,9 @@ typedef struct student_t_part {
     unsigned slots;          /* codes [slot_count]: the cell of each */
     unsigned cells;          /* student_t_impl_between [] */
     int shapes[3];           /* nodes of gamma: of slopes, of slopes across, of masking */
-    unsigned slopes;         /* codes [rows + 2][2][numbers][shapes][2], and a node, as in a shape */
-    unsigned columns;        /* [][2 numbers + 1][5], for each 16 rows: start, step and square of the
-                              * codes of values, start and step of those of slopes */
+    unsigned slopes;         /* codes [rows + 2][2][numbers][shapes][2] and a node, as of a shape */
+    unsigned columns;        /* [][2 numbers + 1][5], for each 16 rows: start, step and square of
+                              * the codes of values, start and step of those of slopes */
     unsigned across;         /* [cells + 2][shapes][2]: value and slope */
     unsigned masking[2];     /* codes of the same, of G1/coordinate/cells, and [cells + 2][2][2]:
                               * their starts and steps */
@@ -200,17 +200,17 @@ typedef struct student_t_part {
  * quadratic, quadratic and cubic. */
 typedef struct student_t_volume {
     float shapes[2], sigmas[2];     /* the ends of 2 gamma - 3 and of sigma */
-    float first[2], density[2];     /* by shape and by sigma: coordinate of the first node, and nodes
-                                     * in a unit */
+    float first[2], density[2];     /* by shape and by sigma: coordinate of the first node, and
+                                     * nodes in a unit */
     float averages_first, averages_density;
     float start[6], step[6];        /* of codes */
     unsigned codes[6];              /* [][37][29]: of sqrt(1 - E), and of bias and F82 less E times
-                                     * those of a mirror; [][37]: of log2(1 - E_avg), and of averages
-                                     * of the other two; 0 where a family has no albedos */
+                                     * those of a mirror; [][37]: of log2(1 - E_avg), and of the
+                                     * averages of both; 0 where a family has no albedos */
 } student_t_volume;
 
-/* All shapes from gamma = 1.501 to infinity: one block of memory without pointers, of `bytes` bytes,
- * which may be copied anywhere, as to a GPU. */
+/* All shapes from gamma = 1.501 to infinity: one block of memory without pointers, of so many bytes
+ * as it says, which may be copied anywhere, as to a GPU. */
 typedef struct student_t_family {
     unsigned magic, layout, bytes;
     float seam;                     /* smaller gamma are those of the last part */

@@ -54,7 +54,10 @@ STUDENT_T_FUNCTION float student_t_impl_end(float u)
 }
 
 /* -1 if so, else 1: no branch, which no processor could predict of a random number. */
-STUDENT_T_FUNCTION float student_t_impl_sign(int negative) { return STUDENT_T_IMPL_CAST(float, 1 - 2 * negative); }
+STUDENT_T_FUNCTION float student_t_impl_sign(int negative)
+{
+    return STUDENT_T_IMPL_CAST(float, 1 - 2 * negative);
+}
 
 /* A visible normal by inverting the distributions of two slopes, which are independent: x : z in
  * the plane of incidence and t : tz across it, in units of sqrt(z z + s x x). Tables hold the
@@ -133,8 +136,8 @@ STUDENT_T_FUNCTION void student_t_impl_sample_tables(const student_t_lobe *lobe,
         const float vx = v[0], vy = v[1];
         const float ahead = x * (sign * tz), aside = norm * t;
         student_t_impl_raise(lobe->sigma_x * (ahead * d.x - aside * d.y),
-                             lobe->sigma_y * (ahead * d.y + aside * d.x), z * (0.5f * (d.frame * tz)),
-                             shrink, m);
+                             lobe->sigma_y * (ahead * d.y + aside * d.x),
+                             z * (0.5f * (d.frame * tz)), shrink, m);
         /* v.m is at least rho length/|m| times g tz less that of the silhouette, from which ten
          * roundings, of terms of up to rho length (3 + 6 |t|)/|m|, cannot take it below 0. */
         if (!(clear * tz >= 2e-6f * tz + 4e-6f * fabsf(t)))
@@ -145,8 +148,9 @@ STUDENT_T_FUNCTION void student_t_impl_sample_tables(const student_t_lobe *lobe,
 /* A normal m visible from v, from two numbers. u[0] chooses the slope along the azimuth of the view
  * and u[1] that across, both rising (for gamma < 1.8 within either of two parts); for GGX they are
  * height and azimuth of a point of a spherical cap. m is of unit length and above the horizon. */
-STUDENT_T_FUNCTION void student_t_lobe_sample_visible_normal(const student_t_lobe *lobe, const float v[3],
-                                                        const float u[2], float m[3])
+STUDENT_T_FUNCTION void student_t_lobe_sample_visible_normal(const student_t_lobe *lobe,
+                                                             const float v[3], const float u[2],
+                                                             float m[3])
 {
     if (lobe->is_ggx) {
         student_t_impl_sample_cap(lobe->sigma_x, lobe->sigma_y, v, u, m);
@@ -156,8 +160,8 @@ STUDENT_T_FUNCTION void student_t_lobe_sample_visible_normal(const student_t_lob
 }
 
 /* Density of visible normals, max(0, v.m) D(m) G1(v)/(v.n). */
-STUDENT_T_FUNCTION float student_t_lobe_visible_normal_pdf(const student_t_lobe *lobe, const float v[3],
-                                                      const float m[3])
+STUDENT_T_FUNCTION float student_t_lobe_visible_normal_pdf(const student_t_lobe *lobe,
+                                                           const float v[3], const float m[3])
 {
     student_t_impl_direction d;
     const float facing = student_t_impl_max(v[0] * m[0] + v[1] * m[1] + v[2] * m[2], 0.0f);

@@ -70,14 +70,13 @@ STUDENT_T_FUNCTION float student_t_impl_cubic(const float *c, float w)
 }
 
 /* scale (1 + part/whole)^power for part >= 0 and whole > 0, to a relative error of 4e-7 times one
- * plus its logarithm; 0 where the power is below 2^-126. It keeps the digits of a part that is small
- * compared with the whole; a whole below the least normal number counts as about that. Twice as fast
- * as a logarithm and an exponential of a library. */
+ * plus its logarithm; 0 where the power is below 2^-126. It keeps the digits of a part that is
+ * small compared with the whole; a whole below the least normal number counts as about that. */
 STUDENT_T_FUNCTION float
 student_t_impl_power_of_growth(float whole, float part, float power, float scale)
 {
-    /* sum/whole is 2^e m = 2^e (1 + t)/(1 - t) with |t| <= 0.2, since bits are linear between powers
-     * of 2. */
+    /* sum/whole is 2^e (1 + t)/(1 - t) with |t| <= 0.2, since bits are linear between powers of
+     * 2. */
     const float sum = whole + part;
     const int low = student_t_impl_bits(whole), high = student_t_impl_bits(sum);
     const int exponent = (high - low + 0x400000) >> 23;

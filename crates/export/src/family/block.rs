@@ -36,8 +36,8 @@ pub(crate) const MAGIC: u32 = u32::from_le_bytes(*b"StuT");
 /// to three times as much; a cell's slopes weigh 4/27 of its values at most.
 const VALUES: f64 = 1.3e-6;
 const SLOPES: f64 = 1.4e-5;
-/// The first nodes of a half, of which codes are roots: tails of grazing views have half tangents of
-/// 1e-5.
+/// The first nodes of a half, of which codes are roots: tails of grazing views have half tangents
+/// of 1e-5.
 const TAIL: usize = 12;
 /// Rows of slopes whose codes have steps in common, as the functions know it.
 const ROWS: usize = 16;
@@ -157,7 +157,7 @@ impl Block {
         let columns = self.numbers(offsets, starts);
         let cells = f64::from(part.masking_cells);
         let masking = self.coded(offsets, &part.masking, MASKING.map(|x| x / cells));
-        // Areas over M₀ fall with 2γ − 3: as shares of the largest of their γ they keep their digits.
+        // Areas over M₀ fall with 2γ − 3: as shares of the largest of their γ they keep digits.
         let of_shape = |j: usize| part.rests.values.iter().skip(j).step_by(part.rests.shapes);
         let largest: Vec<f32> = (0..part.rests.shapes.min(part.rests.values.len()))
             .map(|j| of_shape(j).fold(f32::MIN_POSITIVE, |most, cell| most.max(cell[0])))
