@@ -43,7 +43,7 @@ fn a_shape_is_a_small_header_beside_the_functions() {
     for name in names(&out) {
         let text = fs::read_to_string(out.join(&name)).unwrap();
         assert!(text.is_ascii() && text.ends_with("#endif\n"), "{name}");
-        assert!(text.contains("SPDX-License-Identifier: CC0-1.0"), "{name}");
+        assert!(text.contains("SPDX-License-Identifier: CC0-1.0 OR MIT"), "{name}");
         let widest = text.lines().max_by_key(|line| line.len()).unwrap();
         assert!(widest.len() <= 100, "{name}: {widest}");
         assert!(text.len() < 300_000, "{name}: {}", text.len());
@@ -335,7 +335,7 @@ fn every_shape_is_one_header_or_one_file() {
     let sizes =
         ["text/student_t_family.h", "bare/student_t_family.h", "bytes/student_t_family.bin"]
             .map(|name| fs::read(at.join(name)).unwrap().len());
-    assert!(sizes[0] < 2_530_000 && sizes[1] < sizes[0] * 6 / 10, "{sizes:?}");
+    assert!(sizes[0] < 2_500_000 && sizes[1] < sizes[0] * 6 / 10, "{sizes:?}");
     // The file says its size.
     let bytes = fs::read(at.join("bytes/student_t_family.bin")).unwrap();
     let word = |i: usize| u32::from_le_bytes(bytes[4 * i..][..4].try_into().unwrap());

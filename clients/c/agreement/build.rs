@@ -6,10 +6,7 @@ use std::{env, fs};
 
 fn main() {
     println!("cargo::rerun-if-env-changed=STUDENT_T_HEADERS");
-    println!("cargo::rerun-if-changed=src/lookups.c");
-    println!("cargo::rerun-if-changed=src/families.c");
-    println!("cargo::rerun-if-changed=src/interfaces.c");
-    println!("cargo::rerun-if-changed=src/materials.c");
+    println!("cargo::rerun-if-changed=src");
     let folder =
         PathBuf::from(env::var_os("STUDENT_T_HEADERS").expect("STUDENT_T_HEADERS: a folder"));
     println!("cargo::rerun-if-changed={}", folder.display());
@@ -34,17 +31,18 @@ fn main() {
     let gammas: Vec<String> = names.iter().map(|name| name.replace('p', ".")).collect();
     fs::write(out.join("gammas.txt"), gammas.join("\n")).unwrap();
 
-    // The tables of dielectrics, of which there may be none.
+    // The tables of dielectrics.
     let mut indices: Vec<String> = fs::read_dir(&folder)
         .expect("the folder of the headers")
         .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
         .filter_map(|name| Some(name.strip_prefix("student_t_eta_")?.strip_suffix(".h")?.into()))
         .collect();
     indices.sort();
+    assert!(!indices.is_empty(), "no dielectrics in {}", folder.display());
     let includes: String =
         indices.iter().map(|name| format!("#include \"student_t_eta_{name}.h\"\n")).collect();
     let all: String = indices.iter().map(|name| format!("&student_t_eta_{name}, ")).collect();
-    fs::write(out.join("indices.h"), format!("{includes}#define INDICES {{{all}0}}\n")).unwrap();
+    fs::write(out.join("indices.h"), format!("{includes}#define INDICES {{{all}}}\n")).unwrap();
     let etas: Vec<String> = indices.iter().map(|name| name.replace('p', ".")).collect();
     fs::write(out.join("indices.txt"), etas.join("\n")).unwrap();
 

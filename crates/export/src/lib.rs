@@ -85,32 +85,31 @@ pub fn files(target: Target, shapes: &[Shape]) -> Vec<ExportFile> {
     }
 }
 
-/// The files of C for every shape at once: the functions, and the tables as a header or, if
-/// `binary`, as a file of bytes.
-pub fn family_files(family: &Family, binary: bool) -> Vec<ExportFile> {
+/// The file of every shape at once for C: a header or, if `binary`, its tables as bytes. Its
+/// functions are among the [`files`] of C, of shapes or of none.
+#[must_use]
+pub fn family_file(family: &Family, binary: bool) -> ExportFile {
     c::family(family, binary)
 }
 
-/// The headers of dielectrics of one index for C: the functions, and the file of the index. Their
-/// lobes are those of [`files`]. `generator` is the program that baked the tables.
+/// The header of dielectrics of one index for C; the functions and lobes are among the [`files`] of
+/// C. `generator` is the program that baked the tables.
 ///
 /// ```no_run
-/// use microfacet_export::interface_files;
+/// use microfacet_export::interface_file;
 /// use microfacet_sampler::port::interface_tables;
 /// use microfacet_sampler::{Masking, Tables};
 ///
 /// let tables = Tables::from_bytes(&std::fs::read("glass/tables.safetensors")?)?;
 /// let glass = tables.family_dielectric(1.5, Masking::HeightCorrelated)?;
-/// let files = interface_files(&interface_tables(&glass), &tables.provenance().generator);
-/// assert_eq!(files.last().unwrap().name, "student_t_eta_1p5.h");
+/// let file = interface_file(&interface_tables(&glass), &tables.provenance().generator);
+/// assert_eq!(file.name, "student_t_eta_1p5.h");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[must_use]
-pub fn interface_files(
+pub fn interface_file(
     tables: &microfacet_sampler::port::InterfaceTables,
     generator: &str,
-) -> Vec<ExportFile> {
-    let mut files = c::files(&[]);
-    files.push(c::interface(tables, generator));
-    files
+) -> ExportFile {
+    c::interface(tables, generator)
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use microfacet_baker::store::OutputFolder;
 use microfacet_core::Masking;
 use microfacet_export::{
-    ExportFile, Family, Language, Shape, Storage, Target, family_files, files, interface_files,
+    ExportFile, Family, Language, Shape, Storage, Target, family_file, files, interface_file,
     texture_rows,
 };
 use microfacet_sampler::Tables;
@@ -78,7 +78,7 @@ const PROMISED_ROWS: usize = 2048;
 
 pub(super) fn shader(language: Language, args: &ShaderArgs) -> Result<()> {
     let storage = if args.textures { Storage::Texture } else { Storage::Buffer };
-    let shapes = bind(&args.gamma, &args.ends)?;
+    let shapes = bind(&tables(args.ends.tables.as_deref())?, &args.gamma)?;
     if language.storage(storage) == Storage::Texture
         && let rows = texture_rows(&shapes)
         && rows > PROMISED_ROWS
@@ -93,22 +93,17 @@ pub(super) fn shader(language: Language, args: &ShaderArgs) -> Result<()> {
 
 pub(super) fn c(args: &CArgs) -> Result<()> {
     let set = tables(args.ends.tables.as_deref())?;
-    let mut written = Vec::new();
+    let mut shapes = bind(&set, &args.gamma)?;
+    if args.no_albedo {
+        shapes.iter_mut().for_each(Shape::leave_out_albedos);
+    }
+    let mut written = files(Target::C, &shapes);
     if args.family {
-        written = family_files(&Family::bind(&set, !args.no_albedo)?, args.binary);
-    } else if !args.gamma.is_empty() {
-        let mut shapes = bind(&args.gamma, &args.ends)?;
-        if args.no_albedo {
-            shapes.iter_mut().for_each(Shape::leave_out_albedos);
-        }
-        written = files(Target::C, &shapes);
+        written.push(family_file(&Family::bind(&set, !args.no_albedo)?, args.binary));
     }
     for eta in distinct(args.eta.iter().copied()) {
         written.extend(interfaces(&set, eta)?);
     }
-    // The functions are the same for all.
-    written.sort_by(|a, b| a.name.cmp(&b.name));
-    written.dedup();
     write(&args.ends, &written)
 }
 
@@ -119,8 +114,8 @@ fn interfaces(set: &Tables, eta: f64) -> Result<Vec<ExportFile>> {
         return Err(why.into());
     }
     let generator = &set.provenance().generator;
-    let files = |glass| interface_files(&interface_tables(&glass), generator);
-    Ok(found.into_iter().flatten().flat_map(files).collect())
+    let file = |glass| interface_file(&interface_tables(&glass), generator);
+    Ok(found.into_iter().flatten().map(file).collect())
 }
 
 fn write(ends: &Ends, files: &[ExportFile]) -> Result<()> {
@@ -128,12 +123,11 @@ fn write(ends: &Ends, files: &[ExportFile]) -> Result<()> {
 }
 
 /// The shapes of an export.
-fn bind(gammas: &[f64], ends: &Ends) -> Result<Vec<Shape>> {
+fn bind(set: &Tables, gammas: &[f64]) -> Result<Vec<Shape>> {
     values::tabulated(gammas, "")?;
-    let set = tables(ends.tables.as_deref())?;
     let gammas = distinct(gammas.iter().copied());
     let shapes: Vec<Shape> =
-        gammas.into_iter().map(|gamma| Shape::bind(&set, gamma)).collect::<Result<_, _>>()?;
+        gammas.into_iter().map(|gamma| Shape::bind(set, gamma)).collect::<Result<_, _>>()?;
     for shape in &shapes {
         for masking in &shape.from_default {
             note(format!(

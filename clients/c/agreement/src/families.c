@@ -1,17 +1,6 @@
 /* The functions of a family over arrays, compiled as C and as C++ under two prefixes. */
-#include <stddef.h>
-
+#include "prefix.h"
 #include "student_t_family.h"
-
-#define JOIN_(a, b) a##b
-#define JOIN(a, b) JOIN_(a, b)
-#define NAME(name) JOIN(PREFIX, name)
-
-#ifdef __cplusplus
-#define EXPORT extern "C"
-#else
-#define EXPORT extern
-#endif
 
 /* As `Hit` and `At` in Rust. */
 typedef struct hit {

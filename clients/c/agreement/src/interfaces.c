@@ -1,20 +1,9 @@
 /* Dielectrics of exported shapes over arrays, compiled as C and as C++ under two prefixes. */
-#include <stddef.h>
-
+#include "prefix.h"
 #include "student_t_materials.h"
 
 #include "indices.h"
 #include "shapes.h"
-
-#define JOIN_(a, b) a##b
-#define JOIN(a, b) JOIN_(a, b)
-#define NAME(name) JOIN(PREFIX, name)
-
-#ifdef __cplusplus
-#define EXPORT extern "C"
-#else
-#define EXPORT extern
-#endif
 
 /* As `Query` and `Found` in Rust. */
 typedef struct query {

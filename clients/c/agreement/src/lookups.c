@@ -1,17 +1,6 @@
 /* The functions of exported shapes over arrays, compiled as C and as C++ under two prefixes. */
-#include <stddef.h>
-
+#include "prefix.h"
 #include "shapes.h"
-
-#define JOIN_(a, b) a##b
-#define JOIN(a, b) JOIN_(a, b)
-#define NAME(name) JOIN(PREFIX, name)
-
-#ifdef __cplusplus
-#define EXPORT extern "C"
-#else
-#define EXPORT extern
-#endif
 
 /* As `Point` and `Answer` in Rust. */
 typedef struct point {

@@ -1,18 +1,7 @@
 /* Conductors of exported shapes over arrays, compiled as C and as C++ under two prefixes. */
-#include <stddef.h>
-
+#include "prefix.h"
 #include "shapes.h"
 #include "student_t_materials.h"
-
-#define JOIN_(a, b) a##b
-#define JOIN(a, b) JOIN_(a, b)
-#define NAME(name) JOIN(PREFIX, name)
-
-#ifdef __cplusplus
-#define EXPORT extern "C"
-#else
-#define EXPORT extern
-#endif
 
 /* As `Point` and `Answer` in conductors.rs. */
 typedef struct conductor_point {

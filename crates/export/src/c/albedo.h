@@ -64,47 +64,49 @@ STUDENT_T_FUNCTION int student_t_impl_three(float x, float weights[3])
     return start;
 }
 
-STUDENT_T_FUNCTION student_t_impl_albedo
-student_t_impl_albedo_of(const student_t_lobe *lobe, enum student_t_masking masking)
+/* Filled in where it stays, as lobes are. */
+STUDENT_T_FUNCTION void student_t_impl_albedo_of(const student_t_lobe *lobe,
+                                                 enum student_t_masking masking,
+                                                 student_t_impl_albedo *a)
 {
-    /* What the other kind of tables needs stays 0: compilers warn of copies of what is not set. */
-    student_t_impl_albedo a = {masking, 0.0f, 0.0f, STUDENT_T_IMPL_NULL, 0.0f, 0.0f, 0,
-                               {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f}, STUDENT_T_IMPL_NULL,
-                               STUDENT_T_IMPL_NULL, {0, 0}, {0.0f, 0.0f, 0.0f},
-                               {0.0f, 0.0f, 0.0f}};
+    const student_t_impl_albedo none = {masking, 0.0f, 0.0f, STUDENT_T_IMPL_NULL, 0.0f, 0.0f, 0,
+                                        {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f}, STUDENT_T_IMPL_NULL,
+                                        STUDENT_T_IMPL_NULL, {0, 0}, {0.0f, 0.0f, 0.0f},
+                                        {0.0f, 0.0f, 0.0f}};
     const int form = masking == STUDENT_T_UNCORRELATED ? 0 : 1;
     const float stand_in = sqrtf(lobe->sigma_x * lobe->sigma_y);
-    a.less = student_t_impl_min(2.0f * lobe->gamma - 3.0f, 1e30f);
+    /* What the other kind of tables needs stays 0: compilers warn of copies of what is not set. */
+    *a = none;
+    a->less = student_t_impl_min(2.0f * lobe->gamma - 3.0f, 1e30f);
     if (lobe->family) {
         const student_t_volume *t = &lobe->family->albedo[form];
         const float s =
             student_t_impl_min(student_t_impl_max(stand_in, t->sigmas[0]), t->sigmas[1]);
-        const float d = student_t_impl_min(student_t_impl_max(a.less, t->shapes[0]), t->shapes[1]);
+        const float d = student_t_impl_min(student_t_impl_max(a->less, t->shapes[0]), t->shapes[1]);
         const float octaves = student_t_impl_octaves(s);
         const float shape = sqrtf(sqrtf(d / (d + 3.0f)));
         const float sigma = student_t_impl_octaves(1.0f + 60.0f * s) + 0.2f * octaves + s;
-        a.family = lobe->family;
-        a.volume = t;
-        a.less = d;
-        a.sigma = s;
-        a.coordinate = (octaves + 2.0f * s - t->averages_first) * t->averages_density;
-        a.first[0] = student_t_impl_three((shape - t->first[0]) * t->density[0], a.by_shape);
-        a.first[1] = student_t_impl_three((sigma - t->first[1]) * t->density[1], a.by_sigma);
-        if (t->codes[0] == 0u) a.sigma = 0.0f; /* without albedos nothing is lost */
+        a->family = lobe->family;
+        a->volume = t;
+        a->less = d;
+        a->sigma = s;
+        a->coordinate = (octaves + 2.0f * s - t->averages_first) * t->averages_density;
+        a->first[0] = student_t_impl_three((shape - t->first[0]) * t->density[0], a->by_shape);
+        a->first[1] = student_t_impl_three((sigma - t->first[1]) * t->density[1], a->by_sigma);
+        if (t->codes[0] == 0u) a->sigma = 0.0f; /* without albedos nothing is lost */
     } else {
         const student_t_albedo_table *t = &lobe->shape->albedo[form];
-        a.table = t;
-        a.sigma = student_t_impl_min(student_t_impl_max(stand_in, t->sigma_min), t->sigma_max);
-        a.floor = t->floor * (t->slope * a.sigma) / (t->floor + t->slope * a.sigma);
-        a.coordinate = log1pf(a.sigma / t->offset) + t->slow * logf(a.sigma / t->first) +
-                       t->linear * a.sigma;
-        a.coordinate = (a.coordinate - t->start) / t->range;
-        a.start = student_t_impl_six(
-            a.coordinate * STUDENT_T_IMPL_CAST(float, t->sigmas - 1), t->sigmas, a.weights);
-        if (!t->values) a.sigma = 0.0f; /* without albedos nothing is lost */
+        a->table = t;
+        a->sigma = student_t_impl_min(student_t_impl_max(stand_in, t->sigma_min), t->sigma_max);
+        a->floor = t->floor * (t->slope * a->sigma) / (t->floor + t->slope * a->sigma);
+        a->coordinate = log1pf(a->sigma / t->offset) + t->slow * logf(a->sigma / t->first) +
+                       t->linear * a->sigma;
+        a->coordinate = (a->coordinate - t->start) / t->range;
+        a->start = student_t_impl_six(
+            a->coordinate * STUDENT_T_IMPL_CAST(float, t->sigmas - 1), t->sigmas, a->weights);
+        if (!t->values) a->sigma = 0.0f; /* without albedos nothing is lost */
     }
-    if (lobe->is_mirror) a.sigma = 0.0f;
-    return a;
+    if (lobe->is_mirror) a->sigma = 0.0f;
 }
 
 /* Within about how much of the horizon light is lost, as a cosine. */
@@ -172,6 +174,10 @@ STUDENT_T_FUNCTION float student_t_impl_view(const student_t_impl_albedo *a, flo
     return t->weight * x + t->normal * (nu / (nu + sine)) +
            (1.0f - t->weight - t->normal) * roots;
 }
+
+/* Averages of a mirror's bias and F82 over the hemisphere. */
+#define STUDENT_T_IMPL_SCHLICK_AVERAGE (1.0f / 21.0f)
+#define STUDENT_T_IMPL_F82_AVERAGE 0.14009036f /* 117649/839808 */
 
 /* Bias and F82 of a mirror: (1 - mu)^5 and 7^7/6^6 mu (1 - mu)^6. */
 STUDENT_T_FUNCTION void student_t_impl_mirror(float mu, float *bias, float *f82)
@@ -269,8 +275,8 @@ STUDENT_T_FUNCTION void student_t_impl_averages(const student_t_impl_albedo *a, 
     const float *node;
     int i;
     averages[0] = -1e30f;
-    averages[1] = 1.0f / 21.0f;
-    averages[2] = 0.14009036f; /* 117649/839808 */
+    averages[1] = STUDENT_T_IMPL_SCHLICK_AVERAGE;
+    averages[2] = STUDENT_T_IMPL_F82_AVERAGE;
     if (!(a->sigma > 0.0f)) return;
     if (!t) {
         const student_t_volume *volume = a->volume;
@@ -324,7 +330,8 @@ STUDENT_T_FUNCTION void student_t_impl_limit(float e, float bias, float f82, flo
 STUDENT_T_FUNCTION float student_t_lobe_albedo(const student_t_lobe *lobe,
                                           float cos_theta, enum student_t_masking masking)
 {
-    const student_t_impl_albedo a = student_t_impl_albedo_of(lobe, masking);
+    student_t_impl_albedo a;
+    student_t_impl_albedo_of(lobe, masking, &a);
     return 1.0f - student_t_impl_lost(&a, cos_theta);
 }
 
@@ -335,8 +342,9 @@ STUDENT_T_FUNCTION void student_t_lobe_albedo_parts(const student_t_lobe *lobe,
                                                float cos_theta, enum student_t_masking masking,
                                                float scale_bias_f82[3])
 {
-    const student_t_impl_albedo a = student_t_impl_albedo_of(lobe, masking);
+    student_t_impl_albedo a;
     float moments[3];
+    student_t_impl_albedo_of(lobe, masking, &a);
     student_t_impl_moments(&a, cos_theta, moments);
     student_t_impl_limit(1.0f + moments[0], moments[1], moments[2], scale_bias_f82);
 }
@@ -345,7 +353,8 @@ STUDENT_T_FUNCTION void student_t_lobe_albedo_parts(const student_t_lobe *lobe,
 STUDENT_T_FUNCTION float student_t_lobe_albedo_average(const student_t_lobe *lobe,
                                                   enum student_t_masking masking)
 {
-    const student_t_impl_albedo a = student_t_impl_albedo_of(lobe, masking);
+    student_t_impl_albedo a;
+    student_t_impl_albedo_of(lobe, masking, &a);
     return 1.0f - student_t_impl_lost_average(&a);
 }
 
@@ -354,11 +363,20 @@ STUDENT_T_FUNCTION void student_t_lobe_albedo_average_parts(const student_t_lobe
                                                        enum student_t_masking masking,
                                                        float scale_bias_f82[3])
 {
-    const student_t_impl_albedo a = student_t_impl_albedo_of(lobe, masking);
+    student_t_impl_albedo a;
     float averages[3];
+    student_t_impl_albedo_of(lobe, masking, &a);
     student_t_impl_averages(&a, averages);
     student_t_impl_limit(1.0f - student_t_impl_min(expf(averages[0]), 1.0f), averages[1],
                          averages[2], scale_bias_f82);
+}
+
+/* The lobe of further bounces from three losses; what loses nothing gets nothing back. */
+STUDENT_T_FUNCTION float student_t_impl_kulla_conty(float lost_v, float lost_l, float average)
+{
+    return average > STUDENT_T_SMALLEST
+               ? STUDENT_T_IMPL_INVERSE_PI * (lost_v * lost_l) / average
+               : 0.0f;
 }
 
 /* The lobe of all bounces after the first with F = 1, a BRDF without the cosine:
@@ -366,16 +384,20 @@ STUDENT_T_FUNCTION void student_t_lobe_albedo_average_parts(const student_t_lobe
  * multiply it by F_avg^2 E_avg/(1 - F_avg (1 - E_avg)), with F_avg its average reflectance, which
  * is (20 F0 + F90)/21 for Schlick's. Drawing lights by the cosine suits it for sigma >= 0.3; smooth
  * surfaces lose their light at grazing, where such samples have weights of the order of 1/sigma. */
-STUDENT_T_FUNCTION float student_t_lobe_compensation(const student_t_lobe *lobe,
-                                                const float v[3], const float l[3],
-                                                enum student_t_masking masking)
+STUDENT_T_FUNCTION float student_t_lobe_compensation(const student_t_lobe *lobe, const float v[3],
+                                                     const float l[3],
+                                                     enum student_t_masking masking)
 {
+    student_t_impl_albedo a;
     if (!(v[2] > 0.0f && l[2] > 0.0f)) return 0.0f;
-    {
-        const student_t_impl_albedo a = student_t_impl_albedo_of(lobe, masking);
-        const float average = student_t_impl_lost_average(&a);
-        const float both = student_t_impl_lost(&a, v[2]) * student_t_impl_lost(&a, l[2]);
-        /* What loses nothing gets nothing back. */
-        return average > STUDENT_T_SMALLEST ? 0.318309886f * both / average : 0.0f;
-    }
+    student_t_impl_albedo_of(lobe, masking, &a);
+    return student_t_impl_kulla_conty(student_t_impl_lost(&a, v[2]), student_t_impl_lost(&a, l[2]),
+                                      student_t_impl_lost_average(&a));
+}
+
+/* The same from albedos E(v), E(l) and E_avg that are at hand: a renderer looks up that of a view
+ * once for all its lights, and the average once for a material. 0 where E_avg is not below 1. */
+STUDENT_T_FUNCTION float student_t_compensation_from(float e_v, float e_l, float e_average)
+{
+    return student_t_impl_kulla_conty(1.0f - e_v, 1.0f - e_l, 1.0f - e_average);
 }

@@ -54,10 +54,10 @@ student_t_impl_reflectance(enum student_t_reflectance_form form, float a, float 
     if (form == STUDENT_T_SCHLICK) {
         return student_t_impl_schlick(a, b, mu);
     } else if (form == STUDENT_T_F82) {
-        const float x = 1.0f - mu, x2 = x * x, weight = x2 * x2 * x;
+        float weight, dip;
+        student_t_impl_mirror(mu, &weight, &dip);
         /* Near its peak the dip of a small F0 and tint exceeds Schlick's reflectance. */
-        return student_t_impl_max(a + (1.0f - a) * weight - b * (17.651384f * mu * (x * weight)),
-                                  0.0f);
+        return student_t_impl_max(a + (1.0f - a) * weight - b * dip, 0.0f);
     }
     return student_t_impl_fresnel(a, b, mu);
 }
@@ -106,7 +106,7 @@ student_t_schlick(const float f0[STUDENT_T_CHANNELS], const float f90[STUDENT_T_
     for (i = 0; i < STUDENT_T_CHANNELS; ++i) {
         r.a[i] = student_t_impl_unit(f0[i]);
         r.b[i] = student_t_impl_unit(f90[i]);
-        r.average[i] = r.a[i] + (r.b[i] - r.a[i]) * (1.0f / 21.0f);
+        r.average[i] = r.a[i] + (r.b[i] - r.a[i]) * STUDENT_T_IMPL_SCHLICK_AVERAGE;
     }
     return r;
 }
@@ -126,7 +126,8 @@ student_t_f82(const float f0[STUDENT_T_CHANNELS], const float tint[STUDENT_T_CHA
                  student_t_impl_schlick(r.a[i], 1.0f, 1.0f / 7.0f);
         /* The dip is largest at its peak; where F0 exceeds that, the formula is never negative. */
         r.average[i] = r.a[i] >= r.b[i]
-                           ? r.a[i] + (1.0f - r.a[i]) * (1.0f / 21.0f) - r.b[i] * 0.14009036f
+                           ? r.a[i] + (1.0f - r.a[i]) * STUDENT_T_IMPL_SCHLICK_AVERAGE -
+                                 r.b[i] * STUDENT_T_IMPL_F82_AVERAGE
                            : student_t_impl_reflectance_average(r.form, r.a[i], r.b[i]);
     }
     return r;
@@ -177,18 +178,14 @@ STUDENT_T_FUNCTION void
 student_t_impl_grazing_sample(const student_t_impl_grazing *g, const float u[2], float l[3])
 {
     const float number = student_t_impl_unit(u[0]);
-    float x, r, sine, cosine;
+    float x;
     if (number < STUDENT_T_IMPL_PLAIN) {
         x = number / STUDENT_T_IMPL_PLAIN;
     } else {
         const float within = (number - STUDENT_T_IMPL_PLAIN) / (1.0f - STUDENT_T_IMPL_PLAIN);
         x = student_t_impl_unit(g->square * (exp2f(within * g->octaves) - 1.0f));
     }
-    r = sqrtf(1.0f - x);
-    student_t_impl_turn(student_t_impl_unit(u[1]), &sine, &cosine);
-    l[0] = r * cosine;
-    l[1] = r * sine;
-    l[2] = sqrtf(x);
+    student_t_impl_upward(x, u[1], l);
 }
 
 /* Its density over that of the cosine, |cos|/pi. */
@@ -226,21 +223,16 @@ STUDENT_T_FUNCTION float student_t_impl_mixture_pdf(const student_t_impl_mixture
     return m->p * m->facets_pdf + (1.0f - m->p) * m->broad_pdf;
 }
 
-/* The weight f |cos|/pdf of a light drawn from both. Densities are divided by their sum first, so
- * that nothing overflows. */
 STUDENT_T_FUNCTION void
 student_t_impl_mixture_weight(const student_t_impl_mixture *m, float weight[STUDENT_T_CHANNELS])
 {
-    float a = 1.0f, b = 0.0f, pdf = 1.0f;
+    float pdf[2], shares[2];
     int i;
-    if (m->p < 1.0f) {
-        const float sum = m->facets_pdf + m->broad_pdf;
-        a = sum > 0.0f ? m->facets_pdf / sum : 0.0f;
-        b = sum > 0.0f ? m->broad_pdf / sum : 0.0f;
-        pdf = sum > 0.0f ? m->p * a + (1.0f - m->p) * b : 1.0f;
-    }
+    pdf[0] = m->facets_pdf;
+    pdf[1] = m->broad_pdf;
+    student_t_impl_mixing(m->p, pdf, shares);
     for (i = 0; i < STUDENT_T_CHANNELS; ++i)
-        weight[i] = (m->facets[i] * a + m->broad[i] * b) / pdf;
+        weight[i] = m->facets[i] * shares[0] + m->broad[i] * shares[1];
 }
 
 /* ---- Conductors --------------------------------------------------------------------------------
@@ -268,7 +260,7 @@ STUDENT_T_FUNCTION void student_t_impl_compensate(student_t_conductor *c)
 {
     const student_t_reflectance *r = &c->reflectance;
     int i;
-    c->albedo = student_t_impl_albedo_of(c->lobe, c->masking);
+    student_t_impl_albedo_of(c->lobe, c->masking, &c->albedo);
     if (c->compensation == STUDENT_T_TURQUIN) {
         for (i = 0; i < STUDENT_T_CHANNELS; ++i) {
             c->bounces[i] = r->a[i];
@@ -348,7 +340,7 @@ student_t_impl_conductor_mixture(const student_t_conductor *c, float lost, float
                                ? lost * student_t_impl_lost(&c->albedo, cosine) / c->lost
                                : 0.0f;
         for (i = 0; i < STUDENT_T_CHANNELS; ++i) m.broad[i] = c->bounces[i] * lobe / factor;
-        m.broad_pdf = factor * (cosine * 0.318309886f);
+        m.broad_pdf = factor * (cosine * STUDENT_T_IMPL_INVERSE_PI);
     }
     return m;
 }

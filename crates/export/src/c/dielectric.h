@@ -44,22 +44,6 @@ STUDENT_T_FUNCTION float student_t_steep_cosine(float eta)
     return student_t_impl_min(2.9802322e-6f * (1.0f + eta) / fabsf(1.0f - eta), 0.01f);
 }
 
-STUDENT_T_FUNCTION float student_t_impl_dot(const float a[3], const float b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* w to length 1, or null where its square is not a positive number of single precision. */
-STUDENT_T_FUNCTION void student_t_impl_normalize(float w[3])
-{
-    const float length2 = student_t_impl_dot(w, w);
-    const float r =
-        length2 > 0.0f && length2 <= STUDENT_T_LARGEST ? 1.0f / sqrtf(length2) : 0.0f;
-    w[0] *= r;
-    w[1] *= r;
-    w[2] *= r;
-}
-
 /* A facet between a view above the surface and a light. */
 typedef struct student_t_impl_sender {
     float m[3];          /* above the horizon */
@@ -130,28 +114,16 @@ typedef struct student_t_impl_part {
     float weight, pdf;
 } student_t_impl_part;
 
-/* f of a part, without the cosine of the light. */
-STUDENT_T_FUNCTION float student_t_impl_part_f(student_t_impl_part part, float cosine)
-{
-    return student_t_impl_finite(part.weight * part.pdf *
-                                 student_t_impl_finite(1.0f / fabsf(cosine)));
-}
-
-/* Whether two directions are finite. */
-STUDENT_T_FUNCTION int student_t_impl_are_finite(const float v[3], const float l[3])
-{
-    return student_t_impl_dot(v, v) + student_t_impl_dot(l, l) <= STUDENT_T_LARGEST;
-}
-
-/* Two parts, of which a sample takes the first with probability p. Densities are divided by their
- * sum first, so that nothing overflows. */
+/* Two parts, of which a sample takes the first with probability p. */
 STUDENT_T_FUNCTION student_t_impl_part student_t_impl_mix(float p, student_t_impl_part a,
                                                           student_t_impl_part b)
 {
     student_t_impl_part mixed;
-    const float sum = a.pdf + b.pdf, x = a.pdf / sum, y = b.pdf / sum;
-    mixed.weight =
-        sum > 0.0f ? (a.weight * x + b.weight * y) / (p * x + (1.0f - p) * y) : 0.0f;
+    float pdf[2], shares[2];
+    pdf[0] = a.pdf;
+    pdf[1] = b.pdf;
+    student_t_impl_mixing(p, pdf, shares);
+    mixed.weight = a.weight * shares[0] + b.weight * shares[1];
     mixed.pdf = p * a.pdf + (1.0f - p) * b.pdf;
     return mixed;
 }
@@ -337,12 +309,6 @@ STUDENT_T_FUNCTION int student_t_impl_dense(const student_t_interface_side *t, d
                               cells + 1, weights);
 }
 
-/* Turquin's factor 1/(1 - lost), at most 1e6. */
-STUDENT_T_FUNCTION float student_t_impl_give_back(float lost)
-{
-    return 1.0f + student_t_impl_min(lost / student_t_impl_max(1.0f - lost, 1e-6f), 1e6f);
-}
-
 /* The shares of a view of this cosine, on side 0 outside and 1 inside. */
 STUDENT_T_FUNCTION student_t_impl_shares
 student_t_impl_shares_of(const student_t_impl_energy *e, int side, float cosine)
@@ -386,7 +352,7 @@ student_t_impl_shares_of(const student_t_impl_energy *e, int side, float cosine)
         s.lost = student_t_impl_max(1.0f - s.reflection - s.transmission, 0.0f);
     }
     s.factor =
-        e->compensation == STUDENT_T_TURQUIN ? student_t_impl_give_back(s.lost) : 1.0f;
+        e->compensation == STUDENT_T_TURQUIN ? student_t_impl_turquin(s.lost, 1.0f) : 1.0f;
     s.returned = e->compensation == STUDENT_T_KULLA_CONTY ? s.lost : 0.0f;
     return s;
 }
@@ -524,17 +490,6 @@ STUDENT_T_FUNCTION float student_t_impl_broad(const float *bands, float cosine)
     return bands[band] + w * (bands[band + 1] - bands[band]);
 }
 
-/* A direction above the horizon by the square of its cosine and a turn. */
-STUDENT_T_FUNCTION void student_t_impl_upward(float square, float turn, float l[3])
-{
-    const float r = sqrtf(1.0f - square);
-    float sine, cosine;
-    student_t_impl_turn(student_t_impl_unit(turn), &sine, &cosine);
-    l[0] = r * cosine;
-    l[1] = r * sine;
-    l[2] = sqrtf(square);
-}
-
 /* A light of that density. */
 STUDENT_T_FUNCTION void student_t_impl_sample_broad(const float *bands, float u, float turn,
                                                     float l[3])
@@ -563,7 +518,7 @@ STUDENT_T_FUNCTION student_t_impl_part student_t_impl_broad_part(float cosine, f
 {
     student_t_impl_part part;
     part.weight = lobe / factor;
-    part.pdf = share * factor * (0.318309886f * fabsf(cosine));
+    part.pdf = share * factor * (STUDENT_T_IMPL_INVERSE_PI * fabsf(cosine));
     return part;
 }
 
@@ -661,7 +616,7 @@ typedef struct student_t_impl_seen {
 STUDENT_T_FUNCTION int student_t_impl_see(const student_t_dielectric *d, const float v[3],
                                           student_t_impl_seen *seen)
 {
-    if (!((v[2] > 0.0f || v[2] < 0.0f) && student_t_impl_are_finite(v, v))) return 0;
+    if (!((v[2] > 0.0f || v[2] < 0.0f) && student_t_impl_is_direction(v))) return 0;
     seen->sign = v[2] > 0.0f ? 1.0f : -1.0f;
     seen->eta = v[2] > 0.0f ? d->eta : 1.0f / d->eta;
     seen->side = v[2] < 0.0f;
@@ -708,8 +663,8 @@ student_t_impl_sent(const student_t_dielectric *d, const student_t_impl_seen *se
 /* The facet between a view and a light as seen from above; returns 0 if there is none, or if it is
  * only sampled. */
 STUDENT_T_FUNCTION int student_t_impl_sender_of(const student_t_dielectric *d,
-                                              const student_t_impl_seen *seen, const float l[3],
-                                              student_t_impl_sender *s)
+                                                const student_t_impl_seen *seen,
+                                                const float l[3], student_t_impl_sender *s)
 {
     if (l[2] > 0.0f) {
         s->m[0] = seen->v[0] + l[0];
@@ -732,9 +687,7 @@ STUDENT_T_FUNCTION int student_t_impl_send(const student_t_impl_seen *seen, floa
     const float facing = student_t_impl_dot(seen->v, s->m);
     if (!(facing > 0.0f)) return 0;
     if (choice < student_t_fresnel_dielectric(seen->eta, student_t_impl_min(facing, 1.0f))) {
-        l[0] = 2.0f * facing * s->m[0] - seen->v[0];
-        l[1] = 2.0f * facing * s->m[1] - seen->v[1];
-        l[2] = 2.0f * facing * s->m[2] - seen->v[2];
+        student_t_reflect(seen->v, s->m, l);
         s->refracts = 0;
         s->transmittance = s->jacobian = 0.0f;
         return l[2] > 0.0f;
@@ -855,21 +808,23 @@ STUDENT_T_FUNCTION float student_t_dielectric_eval_pdf(const student_t_dielectri
     student_t_impl_sender s;
     student_t_impl_shares shares;
     student_t_impl_part part, bounced;
-    float there[3], value, scale;
+    float there[3], value, scale, inverse;
     int i;
     for (i = 0; i < STUDENT_T_CHANNELS; ++i) f[i] = 0.0f;
     if (d->is_smooth || !student_t_impl_see(d, v, &seen)) return 0.0f;
     for (i = 0; i < 3; ++i) there[i] = seen.sign * l[i];
-    if (!((l[2] > 0.0f || l[2] < 0.0f) && student_t_impl_are_finite(l, l))) return 0.0f;
+    if (!((l[2] > 0.0f || l[2] < 0.0f) && student_t_impl_is_direction(l))) return 0.0f;
     shares = student_t_impl_account(d, &seen);
     scale = student_t_impl_scale(&seen, transport);
     part.weight = part.pdf = 0.0f;
     if (student_t_impl_sender_of(d, &seen, there, &s))
         part = student_t_impl_sent(d, &seen, &s, there, scale, shares.factor);
-    value = student_t_impl_part_f(part, l[2]);
+    inverse = student_t_impl_inverse_cosine(l[2]);
+    value = student_t_impl_f(part.weight, part.pdf, inverse);
     if (shares.returned > 0.0f) {
         bounced = student_t_impl_bounced(d, &seen, there, scale, shares.returned);
-        value = student_t_impl_finite(value + student_t_impl_part_f(bounced, l[2]));
+        value += student_t_impl_f(bounced.weight, bounced.pdf, inverse);
+        value = student_t_impl_finite(value);
         part = student_t_impl_mix(1.0f - shares.returned, part, bounced);
     }
     for (i = 0; i < STUDENT_T_CHANNELS; ++i) f[i] = value;

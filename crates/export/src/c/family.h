@@ -100,18 +100,6 @@ STUDENT_T_FUNCTION student_t_lobe student_t_family_lobe(const student_t_family *
     return lobe;
 }
 
-/* Value and slope at a place of a table of numbers and at the next, into nodes. */
-STUDENT_T_FUNCTION void student_t_impl_nodes(const float *table, int shapes, int place,
-                                             const student_t_impl_window *window, float nodes[4])
-{
-    const float *a = table + 2 * (place * shapes + window->start), *b = a + 2 * shapes;
-    const float *w = window->weights;
-    nodes[0] = (w[0] * a[0] + w[1] * a[2]) + (w[2] * a[4] + w[3] * a[6]);
-    nodes[1] = (w[0] * a[1] + w[1] * a[3]) + (w[2] * a[5] + w[3] * a[7]);
-    nodes[2] = (w[0] * b[0] + w[1] * b[2]) + (w[2] * b[4] + w[3] * b[6]);
-    nodes[3] = (w[0] * b[1] + w[1] * b[3]) + (w[2] * b[5] + w[3] * b[7]);
-}
-
 /* The cubic through values and slopes at both ends of a cell. */
 STUDENT_T_FUNCTION float student_t_impl_hermite(const float nodes[4], float w)
 {
@@ -148,32 +136,32 @@ STUDENT_T_FUNCTION void student_t_impl_decode(const student_t_lobe *lobe, const 
 
 /* ---- What lookups read, of a shape or of a family -------------------------------------------- */
 
+/* The cubic of a cell of a table of values and slopes of a family. */
+STUDENT_T_FUNCTION float student_t_impl_cell_of(const student_t_lobe *lobe,
+                                                const unsigned table[2], int shapes,
+                                                const student_t_impl_window *window, int cell,
+                                                float w)
+{
+    float nodes[4];
+    student_t_impl_decode(lobe, table, shapes, cell, 2, window, nodes);
+    student_t_impl_decode(lobe, table, shapes, cell + 1, 2, window, nodes + 2);
+    return student_t_impl_hermite(nodes, w);
+}
+
 /* G1/coordinate/cells of masking. */
 STUDENT_T_FUNCTION float student_t_impl_masking_at(const student_t_lobe *lobe, int cell, float w)
 {
-    if (lobe->family) {
-        float nodes[4];
-        const student_t_part *part = lobe->part;
-        student_t_impl_decode(lobe, part->masking, part->shapes[2], cell, 2, &lobe->masking,
-                              nodes);
-        student_t_impl_decode(lobe, part->masking, part->shapes[2], cell + 1, 2, &lobe->masking,
-                              nodes + 2);
-        return student_t_impl_hermite(nodes, w);
-    }
-    return student_t_impl_cubic(lobe->shape->masking + 4 * cell, w);
+    if (!lobe->family) return student_t_impl_cubic(lobe->shape->masking + 4 * cell, w);
+    return student_t_impl_cell_of(lobe, lobe->part->masking, lobe->part->shapes[2],
+                                  &lobe->masking, cell, w);
 }
 
 /* g of the slope across. */
 STUDENT_T_FUNCTION float student_t_impl_across_at(const student_t_lobe *lobe, int cell, float w)
 {
-    if (lobe->family) {
-        float nodes[4];
-        const student_t_part *part = lobe->part;
-        student_t_impl_nodes(student_t_impl_floats(lobe->family, part->across), part->shapes[1],
-                             cell, &lobe->across, nodes);
-        return student_t_impl_hermite(nodes, w);
-    }
-    return student_t_impl_cubic(lobe->shape->across + 4 * cell, w);
+    if (!lobe->family) return student_t_impl_cubic(lobe->shape->across + 4 * cell, w);
+    return student_t_impl_cell_of(lobe, lobe->part->across, lobe->part->shapes[1], &lobe->across,
+                                  cell, w);
 }
 
 /* Value and slope at a node of a row of slopes and at the next, of a family. */
@@ -185,7 +173,7 @@ student_t_impl_row(const student_t_lobe *lobe, int row, int column, float nodes[
     const unsigned short *codes = student_t_impl_codes(lobe->family, part->slopes) +
                                   (row * numbers + column) * step + 2 * lobe->slopes.start;
     const float *c = student_t_impl_floats(lobe->family, part->columns) +
-                     5 * (row / 16 * (numbers + 1) + column);
+                     5 * (row / STUDENT_T_IMPL_ROWS * (numbers + 1) + column);
     const float *w = lobe->slopes.weights;
     int i, j;
     for (i = 0; i < 2; ++i, codes += step, c += 5) {
@@ -210,9 +198,11 @@ STUDENT_T_FUNCTION float student_t_impl_along_at(const student_t_lobe *lobe, int
     float nodes[4];
     int i;
     if (lobe->family) {
+        /* No row follows the last. */
+        const int next = STUDENT_T_IMPL_CAST(float, row) < lobe->constants->rows ? row + 1 : row;
         float high[4], most;
         student_t_impl_row(lobe, row, column, nodes);
-        student_t_impl_row(lobe, row + 1, column, high);
+        student_t_impl_row(lobe, next, column, high);
         for (i = 0; i < 4; ++i) nodes[i] += between * (high[i] - nodes[i]);
         /* Weights below 0 may take slopes out of the range in which the cubic ascends. */
         most = student_t_impl_max(3.0f * (nodes[2] - nodes[0]), 0.0f);

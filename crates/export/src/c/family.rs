@@ -15,7 +15,7 @@ const DATA: usize = 4000;
 const NAME: &str = "student_t_family";
 
 /// The header with the family as text, or the file with its bytes.
-pub(super) fn file(family: &Family, binary: bool) -> ExportFile {
+pub(in super::super) fn family(family: &Family, binary: bool) -> ExportFile {
     let block = Block::new(family, LAYOUT);
     if binary {
         return ExportFile::new(format!("{NAME}.bin"), block.bytes());
@@ -41,9 +41,15 @@ struct {NAME}_tables {{
     unsigned short codes[{codes}];
 }};
 
+/* Files of bytes have these sizes. */
+typedef char {NAME}_head[sizeof(student_t_family) == {} ? 1 : -1];
+typedef char {NAME}_window[sizeof(student_t_impl_between) == {} ? 1 : -1];
+
 STUDENT_T_DATA struct {NAME}_tables {NAME}_data = {{
 ",
-        layout_check(NAME)
+        layout_check(NAME),
+        Block::HEAD,
+        Block::WINDOW
     )
     .expect("memory");
     text.push_str(&wide_lines([head(&block.head)], DATA));
@@ -111,7 +117,7 @@ fn head(item: &Item) -> String {
         Item::Number(number) => float(*number),
         Item::Group(items) => {
             let items: Vec<String> = items.iter().map(head).collect();
-            format!("{{{}}}", items.join(", "))
+            format!("{{{}}}", items.join(","))
         }
     }
 }

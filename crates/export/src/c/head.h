@@ -4,28 +4,30 @@
  *
  * The Student-t distribution of slopes (roughness sigma, the alpha of GGX and Beckmann; shape gamma
  * > 3/2; Ribardiere et al. 2017, doi:10.1111/cgf.13137) contains GGX (gamma = 2) and Beckmann
- * (gamma = infinity). This file has the functions, and the file of a shape its tables, such as
- * student_t_gamma_3.h for gamma = 3:
+ * (gamma = infinity). This file has the functions; student_t_family.h has tables of every gamma,
+ * and the file of a shape those of one, such as student_t_gamma_3.h:
  *
- *     #include "student_t_gamma_3.h"
+ *     #include "student_t_family.h" // or student_t_gamma_3.h
  *
- *     const student_t_shape *shape = &student_t_gamma_3;
  *     const enum student_t_masking masking = STUDENT_T_HEIGHT_CORRELATED;
- *     const float sigma[2] = {0.3f, 0.3f}, v[3] = {0.6f, 0.0f, 0.8f}, u[2] = {0.2f, 0.7f};
+ *     const float v[3] = {0.6f, 0.0f, 0.8f}, u[2] = {0.2f, 0.7f};
  *     float m[3], l[3], weight, pdf;
- *     student_t_sample_visible_normal(shape, sigma, v, u, m);
+ *     student_t_lobe lobe = student_t_lobe_at(3.0f, 0.3f, 0.3f); // or student_t_gamma_3_lobe(0.3f,
+ *     student_t_lobe_sample_visible_normal(&lobe, v, u, m);      // 0.3f), at a hit
  *     student_t_reflect(v, m, l);
- *     weight = student_t_reflection_weight(shape, sigma, v, l, masking); // f cos / pdf, for F = 1
- *     pdf = student_t_reflection_pdf(shape, sigma, v, m); // of l, per steradian
+ *     weight = student_t_lobe_reflection_weight(&lobe, v, l, masking); // f cos / pdf, for F = 1
+ *     pdf = student_t_lobe_reflection_pdf(&lobe, v, m); // of l, per steradian
  *
- * Towards a given light l, normalise m = v + l: f cos = F D(m) G2(v, l)/(4 v_z), and its density is
- * student_t_reflection_pdf of that m. Densities are over all lights. Those below the horizon have
- * their share of them, and the weight 0. Take the weight of a sampled light from
- * student_t_reflection_weight: f cos over the density has few digits, or none, where both are
- * subnormal, as in the far tails of Beckmann. A surface is better rendered as a mirror with sigma
- * below 1e-3 for gamma >= 2, 4e-4 for 1.8, 6e-5 for 1.6, 2e-5 for 1.55, and 2e-7 for 1.501. Facets
- * that refract are resolved from v and l above a cosine of 3e-6 (1 + eta)/|1 - eta| only, which
- * matters for gamma < 2: see docs/export.md.
+ * student_t_materials.h has whole materials. What is said of a function of a lobe holds for that of
+ * a shape, of the same name without "lobe_", which takes a shape and {sigma_x, sigma_y} instead.
+ *
+ * Towards a given light l student_t_lobe_eval_pdf returns f, for F = 1, and its density. Densities
+ * are over all lights. Those below the horizon have their share of them, and the weight 0. Take the
+ * weight of a sampled light from student_t_reflection_weight: f cos over the density has few
+ * digits, or none, where both are subnormal, as in the far tails of Beckmann. A surface is better
+ * rendered as a mirror where student_t_effectively_smooth says so. Facets that refract are resolved
+ * from v and l above a cosine of 3e-6 (1 + eta)/|1 - eta| only, which matters for gamma < 2: see
+ * docs/export.md.
  *
  * Frame. Directions are float[3], unit vectors in the tangent frame, in which the normal of the
  * surface is (0, 0, 1): v to the viewer, l to the light, m a microfacet normal, w any of them.
@@ -36,6 +38,7 @@
  *
  * Domain. No function reads outside its tables. With directions of length 1, null, or with NaN
  * among their coordinates, none but student_t_reflect returns NaN.
+ *   gamma     Taken at the nearer end of the family's range, [1.501, infinity], NaN at 1.501.
  *   sigma     Taken at the nearer end of [1e-8, 1e6], NaN at 1e-8. Albedos are tabulated up to the
  *             sigma_max of the shape, at least 3, and beyond are those of sigma_max. Where a sigma
  *             is not above 0, or NaN, their surface is a mirror, which has the albedo 1.
@@ -55,14 +58,17 @@
  * sigma_y) stands in. It is off by some 0.07 where one is twice the other, and by up to 0.6, and
  * the compensating lobe then gives back so much too little or too much. All else is exact.
  *
- * Accuracy. The file of a shape lists the errors of its tables, measured against the model in
- * double precision. These functions agree with the Rust crate microfacet-sampler on the same
- * tables, if sigma is at most 10 (beyond in brackets): masking, weights and albedos to 2e-6,
- * coordinates of normals to 1e-5 (1e-3), densities to a share of 1e-5 + 2e-6 |ln(D sigma_x
- * sigma_y)|, averages of albedos to 3e-5. For gamma < 1.6 and cosines < 1e-6 albedos agree to 2e-5,
- * < 1e-20 to 2e-4: there they are extrapolated by a power close to 0. Where a compiler fuses
- * products and sums, normals of gamma <= 2 agree to 1e-3 only (-ffp-contract=off prevents it). Do
- * not use -ffast-math: densities may be lost, and what is said of NaN no longer holds.
+ * Accuracy. A family reads its tables as 16-bit codes: G1 agrees with the crate's Family to 5e-6,
+ * normals to 1e-5 of the cumulative distribution, E to 2.5e-4. The file of a shape lists the errors
+ * of its tables, measured against the model in double precision. These functions agree with the
+ * Rust crate microfacet-sampler on the same tables, if sigma is at most 10 (beyond in brackets):
+ * masking, weights and albedos to 2e-6, coordinates of normals to 1e-5 (1e-3), densities to a share
+ * of 1e-5 + 2e-6 |ln(D sigma_x sigma_y)|, averages of albedos to 3e-5. For gamma < 1.6 and cosines
+ * < 1e-6 albedos agree to 2e-5, < 1e-20 to 2e-4: there they are extrapolated by a power close to 0.
+ * Where a compiler fuses products and sums, normals of gamma <= 2 agree to 1e-3 only
+ * (-ffp-contract=off prevents it). With -ffast-math D, densities, weights and f of sigma from 1e-3
+ * on are off by 2e-6 (clients/c/fast.c); below 1e-5 densities may be lost, and what is said of NaN
+ * no longer holds.
  *
  * Copies. From C++17 on tables and functions are inline: a program has one copy of a shape, at one
  * address, all its translation units must include the same export of it, and inline functions and
@@ -72,12 +78,14 @@
  *
  * CUDA and HIP. All functions are for host and device. In device code tables are in device memory,
  * and static whatever the standard. A shape has one address on the host and another on the device:
- * take it where it is used, and do not pass it to a kernel. NVRTC and hipRTC work, too.
+ * take it where it is used, and do not pass it to a kernel. A family is a block without pointers of
+ * student_t_family_bytes(family) bytes: a kernel takes the address of a copy of it in managed or in
+ * device memory, and makes lobes by student_t_family_lobe. NVRTC and hipRTC work, too.
  */
 #ifndef STUDENT_T_H
 #define STUDENT_T_H
 
-/* Raised whenever the layout of student_t_shape changes: the files of shapes ask for theirs. */
+/* Raised whenever the layout of tables changes: their files ask for theirs. */
 #define STUDENT_T_LAYOUT 3
 
 #if !defined(__CUDACC_RTC__) && !defined(__HIPCC_RTC__)
@@ -180,17 +188,20 @@ typedef struct student_t_part {
     unsigned slots;          /* codes [slot_count]: the cell of each */
     unsigned cells;          /* student_t_impl_between [] */
     int shapes[3];           /* nodes of gamma: of slopes, of slopes across, of masking */
-    unsigned slopes;         /* codes [rows + 2][2][numbers][shapes][2] and a node, as of a shape */
-    unsigned columns;        /* [][2 numbers + 1][5], for each 16 rows: start, step and square of
-                              * the codes of values, start and step of those of slopes */
-    unsigned across;         /* [cells + 2][shapes][2]: value and slope */
-    unsigned masking[2];     /* codes of the same, of G1/coordinate/cells, and [cells + 2][2][2]:
-                              * their starts and steps */
+    unsigned slopes;         /* codes [rows + 1][2][numbers][shapes][2] and a node, as of a shape */
+    unsigned columns;        /* [][2 numbers + 1][5], by STUDENT_T_IMPL_ROWS: start, step, square
+                              * of codes of values, start and step of those of slopes */
+    unsigned across[2];      /* codes [cells + 2][shapes][2] of values and slopes, and
+                              * [cells + 2][2][2]: their starts and steps */
+    unsigned masking[2];     /* the same of G1/coordinate/cells */
     unsigned rests[3];       /* codes [cells + 1][shapes][4]: cubics, of the visible area in tables,
                               * over that of a unit of rho in no table, with gamma as of masking;
                               * starts and steps; and [shapes]: factors */
     unsigned rhos;           /* [cells + 1][4]: cubics, of rho of the same views */
 } student_t_part;
+
+/* Rows of slopes of a family whose codes have steps in common. */
+#define STUDENT_T_IMPL_ROWS 16
 
 /* Coefficients along gamma and along the view of a family's albedos. */
 #define STUDENT_T_VOLUME_SHAPES 37

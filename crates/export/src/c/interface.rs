@@ -20,7 +20,7 @@ pub(in super::super) fn interface(tables: &InterfaceTables, generator: &str) -> 
     let (masking, version) = (tables.masking.name(), env!("CARGO_PKG_VERSION"));
     let [gamma, sigma] = [tables.shapes.ends, tables.sigmas.ends].map(|ends| ends.map(single));
     let mut text = format!(
-        "/* SPDX-License-Identifier: CC0-1.0
+        "/* SPDX-License-Identifier: CC0-1.0 OR MIT
  *
  * {name}.h: dielectrics of eta = {}, inside over outside, under {masking} masking: the
  * shares of light that one bounce reflects and transmits, for gamma from {} to {} and sigma from

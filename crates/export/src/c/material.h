@@ -84,10 +84,37 @@ STUDENT_T_FUNCTION student_t_sample student_t_impl_absorbed(void)
     return s;
 }
 
+STUDENT_T_FUNCTION float student_t_impl_dot(const float a[3], const float b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 /* Whether all coordinates are finite, and their squares. */
 STUDENT_T_FUNCTION int student_t_impl_is_direction(const float w[3])
 {
-    return w[0] * w[0] + w[1] * w[1] + w[2] * w[2] <= STUDENT_T_LARGEST;
+    return student_t_impl_dot(w, w) <= STUDENT_T_LARGEST;
+}
+
+/* w to length 1, or null where its square is not a positive number of single precision. */
+STUDENT_T_FUNCTION void student_t_impl_normalize(float w[3])
+{
+    const float length2 = student_t_impl_dot(w, w);
+    const float r =
+        length2 > 0.0f && length2 <= STUDENT_T_LARGEST ? 1.0f / sqrtf(length2) : 0.0f;
+    w[0] *= r;
+    w[1] *= r;
+    w[2] *= r;
+}
+
+/* A direction above the horizon by the square of its cosine and a turn. */
+STUDENT_T_FUNCTION void student_t_impl_upward(float square, float turn, float l[3])
+{
+    const float r = sqrtf(1.0f - square);
+    float sine, cosine;
+    student_t_impl_turn(student_t_impl_unit(turn), &sine, &cosine);
+    l[0] = r * cosine;
+    l[1] = r * sine;
+    l[2] = sqrtf(square);
 }
 
 /* A choice in [0, 1), NaN as 0: 1 would choose a part of probability 0. */
@@ -115,7 +142,7 @@ student_t_impl_halfway(const student_t_lobe *lobe, enum student_t_masking maskin
     m[0] = v[0] + l[0];
     m[1] = v[1] + l[1];
     m[2] = v[2] + l[2];
-    length2 = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
+    length2 = student_t_impl_dot(m, m);
     if (!(length2 > 0.0f && length2 <= STUDENT_T_LARGEST)) return white;
     facet = student_t_impl_facet_of(lobe, v, m, length2, l, masking);
     white.cosine = 0.5f * sqrtf(length2); /* v.m = 1 + v.l = |m|^2/2 */
@@ -132,10 +159,8 @@ STUDENT_T_FUNCTION int student_t_impl_draw(const student_t_lobe *lobe,
 {
     student_t_impl_facet facet;
     student_t_lobe_sample_visible_normal(lobe, v, u, m);
-    white->cosine = v[0] * m[0] + v[1] * m[1] + v[2] * m[2];
-    l[0] = 2.0f * white->cosine * m[0] - v[0];
-    l[1] = 2.0f * white->cosine * m[1] - v[1];
-    l[2] = 2.0f * white->cosine * m[2] - v[2];
+    white->cosine = student_t_impl_dot(v, m);
+    student_t_reflect(v, m, l);
     if (!(white->cosine > 0.0f && l[2] > 0.0f)) return 0;
     facet = student_t_impl_facet_of(lobe, v, m, 1.0f, l, masking);
     white->weight = facet.weight;
@@ -153,4 +178,19 @@ STUDENT_T_FUNCTION float student_t_impl_f(float weight, float pdf, float inverse
 STUDENT_T_FUNCTION float student_t_impl_inverse_cosine(float cosine)
 {
     return student_t_impl_finite(1.0f / fabsf(cosine));
+}
+
+/* What the weights f |cos|/pdf of two parts are multiplied by in that of a light drawn from both,
+ * of which the first is drawn with probability p. Densities are divided by their sum first, so that
+ * nothing overflows. Where p is 1 there is no second part. */
+STUDENT_T_FUNCTION void student_t_impl_mixing(float p, const float pdf[2], float shares[2])
+{
+    const float sum = pdf[0] + pdf[1], a = pdf[0] / sum, b = pdf[1] / sum;
+    const float whole = p * a + (1.0f - p) * b;
+    shares[0] = p < 1.0f ? 0.0f : 1.0f;
+    shares[1] = 0.0f;
+    if (p < 1.0f && sum > 0.0f) {
+        shares[0] = a / whole;
+        shares[1] = b / whole;
+    }
 }

@@ -9,8 +9,9 @@ use microfacet_sampler::{ConductorFresnel, Metal};
 
 use super::members::{Member, Value};
 use super::numbers::{as_typed, error, identifier, lines, single};
-use super::{AlbedoTable, ExportFile, Family, Shape};
+use super::{AlbedoTable, ExportFile, Shape};
 
+pub(super) use family::family;
 pub(super) use interface::interface;
 
 /// The functions, which do not depend on a shape.
@@ -53,13 +54,6 @@ pub(super) fn files(shapes: &[Shape]) -> Vec<ExportFile> {
         let text = text(shape, &name);
         files.push(ExportFile::new(name + ".h", text));
     }
-    files
-}
-
-/// The file of a family, and those of the functions.
-pub(super) fn family(family: &Family, binary: bool) -> Vec<ExportFile> {
-    let mut files = functions();
-    files.push(family::file(family, binary));
     files
 }
 
@@ -254,8 +248,10 @@ fn float(x: f32) -> String {
 mod tests {
     use microfacet_core::schlick::{F82_AVERAGE, F82_SCALE, SCHLICK_AVERAGE};
     use microfacet_sampler::StudentT;
+    use microfacet_sampler::port::VolumeTables;
 
     use super::*;
+    use crate::family::Block;
 
     #[test]
     fn files_of_shapes_ask_for_the_layout_of_the_functions() {
@@ -266,22 +262,20 @@ mod tests {
     #[test]
     fn constants_are_those_of_the_crate() {
         let [low, high] = StudentT::SIGMAS.map(|sigma| single(sigma as f32));
+        let shares = VolumeTables::VIEW_SHARES.map(float);
         let constants = [
             format!("student_t_impl_max(sigma, {low}f), {high}f)"),
             format!("*f82 = {} * mu", float(F82_SCALE as f32)),
-            format!("averages[2] = {};", float(F82_AVERAGE as f32)),
-            format!("averages[1] = 1.0f / {}f;", single((1.0 / SCHLICK_AVERAGE) as f32)),
+            format!("F82_AVERAGE {} /*", float(F82_AVERAGE as f32)),
+            format!("SCHLICK_AVERAGE (1.0f / {}f)", single((1.0 / SCHLICK_AVERAGE) as f32)),
+            format!("STUDENT_T_VOLUME_SHAPES {}\n", VolumeTables::SIZES[0]),
+            format!("STUDENT_T_VOLUME_VIEWS {}\n", VolumeTables::SIZES[1]),
+            format!("at = {} * sqrtf(sqrtf(x)) + {} * sqrtf", shares[0], shares[1]),
+            format!("STUDENT_T_IMPL_ROWS {}\n", Block::ROWS),
+            format!("STUDENT_T_FAMILY_MAGIC {:#x}u", Block::MAGIC),
         ];
         for constant in constants {
             assert!(HEADER.contains(&constant), "{constant}");
-        }
-        let materials = [
-            format!("b * ({} * mu", float(F82_SCALE as f32)),
-            format!("r.b[i] * {}", float(F82_AVERAGE as f32)),
-            format!("r.a[i]) * (1.0f / {}f)", single((1.0 / SCHLICK_AVERAGE) as f32)),
-        ];
-        for constant in materials {
-            assert!(MATERIALS.contains(&constant), "{constant}");
         }
     }
 

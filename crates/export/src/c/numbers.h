@@ -4,6 +4,7 @@
 
 #define STUDENT_T_LARGEST 3.4028234e38f
 #define STUDENT_T_SMALLEST 1.17549435e-38f
+#define STUDENT_T_IMPL_INVERSE_PI 0.318309886f
 
 STUDENT_T_FUNCTION float student_t_impl_max(float a, float b) { return a > b ? a : b; }
 STUDENT_T_FUNCTION float student_t_impl_min(float a, float b) { return a < b ? a : b; }
@@ -81,8 +82,9 @@ student_t_impl_power_of_growth(float whole, float part, float power, float scale
     const int low = student_t_impl_bits(whole), high = student_t_impl_bits(sum);
     const int exponent = (high - low + 0x400000) >> 23;
     const float scaled = student_t_impl_of_bits(low + exponent * 0x800000);
-    /* The first difference is exact; the second is the rounding of the sum. */
-    const float t = ((sum - scaled) + (part - (sum - whole))) / (sum + scaled), y = t * t;
+    /* A small part keeps its digits, whatever a compiler makes of sums of differences. */
+    const float excess = exponent == 0 ? part : sum - scaled;
+    const float t = excess / (sum + scaled), y = t * t;
     /* log2 of that, by 2 artanh(t)/ln 2. */
     const float log = 2.88539007f + y * (0.96180225f + y * (0.57639026f + y * 0.43918935f));
     const float x = STUDENT_T_IMPL_CAST(float, exponent) * power + (t * power) * log;

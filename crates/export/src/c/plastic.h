@@ -135,7 +135,7 @@ STUDENT_T_FUNCTION student_t_sample student_t_plastic_sample(const student_t_pla
     student_t_impl_part facets, broad, both;
     float l[3], m[3], share, base, coat, factor;
     int i, is_facet;
-    if (!(v[2] > 0.0f && student_t_impl_are_finite(v, v))) return sample;
+    if (!(v[2] > 0.0f && student_t_impl_is_direction(v))) return sample;
     shares = student_t_impl_shares_of(&p->energy, 0, v[2]);
     share = student_t_impl_coat_share(p, &shares);
     is_facet = student_t_impl_choice(choice) < share;
@@ -179,7 +179,7 @@ STUDENT_T_FUNCTION student_t_sample student_t_plastic_sample(const student_t_pla
     for (i = 0; i < STUDENT_T_CHANNELS; ++i) {
         broad = student_t_impl_broad_part(l[2], factor, 1.0f, base * p->diffuse[i] + coat);
         both = student_t_impl_mix(share, facets, broad);
-        sample.weight[i] = share == 1.0f ? facets.weight : both.weight;
+        sample.weight[i] = both.weight;
         sample.pdf = both.pdf;
     }
     return sample;
@@ -194,19 +194,21 @@ STUDENT_T_FUNCTION float student_t_plastic_eval_pdf(const student_t_plastic *p, 
 {
     student_t_impl_shares shares;
     student_t_impl_part facets, broad;
-    float m[3], share, base, coat, factor, pdf = 0.0f;
+    float m[3], share, base, coat, factor, inverse, pdf = 0.0f;
     int i;
     for (i = 0; i < STUDENT_T_CHANNELS; ++i) f[i] = 0.0f;
-    if (!(v[2] > 0.0f && l[2] > 0.0f && student_t_impl_are_finite(v, l))) return 0.0f;
+    if (!(v[2] > 0.0f && l[2] > 0.0f && student_t_impl_is_direction(v) &&
+          student_t_impl_is_direction(l))) return 0.0f;
     shares = student_t_impl_shares_of(&p->energy, 0, v[2]);
     share = student_t_impl_coat_share(p, &shares);
     facets = student_t_impl_coat_between(p, &shares, v, l, m);
     base = student_t_impl_base(p, &shares, l[2], &coat);
     factor = student_t_impl_base_factor(p, l[2]);
+    inverse = student_t_impl_inverse_cosine(l[2]);
     for (i = 0; i < STUDENT_T_CHANNELS; ++i) {
         broad = student_t_impl_broad_part(l[2], factor, 1.0f, base * p->diffuse[i] + coat);
-        f[i] = student_t_impl_finite(student_t_impl_part_f(facets, l[2]) +
-                                     student_t_impl_part_f(broad, l[2]));
+        f[i] = student_t_impl_finite(student_t_impl_f(facets.weight, facets.pdf, inverse) +
+                                     student_t_impl_f(broad.weight, broad.pdf, inverse));
         pdf = share * facets.pdf + (1.0f - share) * broad.pdf;
     }
     return pdf;

@@ -128,6 +128,10 @@ struct dielectric : impl::material<dielectric> {
         : d(student_t_dielectric_compensated(&lobe, &table, compensation))
     {
     }
+    dielectric(const student_t_lobe &&, float, student_t_masking = STUDENT_T_HEIGHT_CORRELATED) =
+        delete;
+    dielectric(const student_t_lobe &&, const student_t_interface_table &,
+               student_t_compensation_form = STUDENT_T_KULLA_CONTY) = delete;
     student_t_sample draw(const float *v, float choice, const float *u,
                           student_t_transport transport) const
     {
@@ -149,6 +153,8 @@ struct plastic : impl::material<plastic> {
         : p(student_t_plastic_at(&lobe, &table, base.data(), compensation))
     {
     }
+    plastic(const student_t_lobe &&, const student_t_interface_table &, const spectrum &,
+            student_t_compensation_form = STUDENT_T_KULLA_CONTY) = delete;
     student_t_sample draw(const float *v, float choice, const float *u, student_t_transport) const
     {
         return student_t_plastic_sample(&p, v, choice, u);

@@ -25,37 +25,40 @@ pub(crate) struct Block {
     pub(crate) codes: Vec<u16>,
 }
 
-/// Bytes of the head, and of the weights between two places of γ.
-const HEAD: usize = 4 * 125;
-pub(crate) const WINDOW: usize = 4 * 53;
-
-/// "StuT" in the order of a little-endian machine.
-pub(crate) const MAGIC: u32 = u32::from_le_bytes(*b"StuT");
-
-/// What codes may be off by. Slopes are half tangents, whose cumulative distribution changes by up
+/// What codes may be off by: as much as keeps the text below 2.5 MB, and normals within 1e-5 of the
+/// crate's cumulative distribution at a million points (`clients/c/run 1000000`). Slopes are half
+/// tangents, whose cumulative distribution changes by up
 /// to three times as much; a cell's slopes weigh 4/27 of its values at most.
-const VALUES: f64 = 1.3e-6;
+const VALUES: f64 = 1.45e-6;
 const SLOPES: f64 = 1.4e-5;
 /// The first nodes of a half, of which codes are roots: tails of grazing views have half tangents
 /// of 1e-5.
 const TAIL: usize = 12;
-/// Rows of slopes whose codes have steps in common, as the functions know it.
-const ROWS: usize = 16;
+/// Of slopes across, and of the slopes along those.
+const ACROSS: [f64; 2] = [5e-7, 4e-6];
 /// Of G1 over its coordinate, times the number of cells, and of the slopes along it.
 const MASKING: [f64; 2] = [1e-6, 6e-6];
 /// Of areas, as shares of the largest of their γ.
-const AREA: f64 = 1.5e-6;
+const AREA: f64 = 2.5e-6;
 /// Of sqrt(1 - E), of other moments, and of log2(1 - E_avg).
 const LOST: f64 = 6.8e-5;
-const MOMENTS: f64 = 7e-4;
-const LOGARITHM: f64 = 2e-4;
+const MOMENTS: f64 = 8e-4;
+const LOGARITHM: f64 = 2.5e-4;
 
 impl Block {
+    /// Bytes of the head, and of the weights between two places of γ.
+    pub(crate) const HEAD: usize = 4 * 127;
+    pub(crate) const WINDOW: usize = 4 * 53;
+    /// "StuT" in the order of a little-endian machine.
+    pub(crate) const MAGIC: u32 = u32::from_le_bytes(*b"StuT");
+    /// Rows of slopes whose codes have steps in common.
+    pub(crate) const ROWS: usize = 16;
+
     pub(crate) fn new(family: &Family, layout: u32) -> Self {
         let mut block = Self { head: Whole(0), windows: vec![], numbers: vec![], codes: vec![] };
         // The sizes of all that comes before numbers, and before codes, are needed for offsets.
         let windows: usize = family.parts.iter().map(|part| part.windows.cells.len()).sum();
-        let numbers_at = HEAD + WINDOW * windows;
+        let numbers_at = Self::HEAD + Self::WINDOW * windows;
         let mut offsets = Offsets { numbers_at, codes: vec![] };
         let mut parts: Vec<Item> =
             family.parts.iter().map(|part| block.part(part, &mut offsets)).collect();
@@ -74,7 +77,7 @@ impl Block {
         let bytes = codes_at + 2 * block.codes.len();
         let seam = if family.parts.len() > 1 { family.parts[0].gammas[0] } else { 0.0 };
         let mut head = Group(vec![
-            Whole(MAGIC),
+            Whole(Self::MAGIC),
             Whole(layout),
             Whole(bytes as u32),
             Number(seam),
@@ -83,7 +86,7 @@ impl Block {
             Group(volumes),
         ]);
         offsets.place(&mut head, codes_at as u32);
-        assert_eq!(4 * head.words().len(), HEAD, "members of the head");
+        assert_eq!(4 * head.words().len(), Self::HEAD, "members of the head");
         block.head = head;
         block
     }
@@ -102,7 +105,7 @@ impl Block {
 
     fn part(&mut self, part: &PartTables, offsets: &mut Offsets) -> Item {
         let windows = &part.windows;
-        let windows_at = HEAD + WINDOW * self.windows.len();
+        let windows_at = Self::HEAD + Self::WINDOW * self.windows.len();
         self.windows.extend(windows.cells.iter().map(|cell| WindowCell {
             from: short(cell.from),
             inverse: short(cell.inverse),
@@ -112,15 +115,14 @@ impl Block {
         let slots = offsets.codes(self.codes.len());
         self.codes.extend(&windows.slots);
 
-        // Columns of slopes: by half, by node. A row and a node of zeros end the table.
+        // Columns of slopes: by half, by node. The table ends with a row and a node to spare.
         let (shapes, columns) = (part.slopes.shapes, 2 * part.numbers);
         let values = &part.slopes.values;
         let real = values.len() - (columns + 1) * shapes;
         // By some rows, since those of grazing views have other slopes than those of steep ones.
-        let rows = real / (columns * shapes);
         let slopes = offsets.codes(self.codes.len());
         let mut starts = Vec::new();
-        for group in values[..real].chunks(ROWS * columns * shapes) {
+        for group in values[..real].chunks(Self::ROWS * columns * shapes) {
             let column = |j: usize| {
                 let places = (j * shapes..group.len()).step_by(columns * shapes);
                 places.flat_map(|at| group[at..at + shapes].iter())
@@ -150,10 +152,8 @@ impl Block {
             }
             starts.extend([0.0; 5]);
         }
-        if rows.is_multiple_of(ROWS) {
-            starts.extend(std::iter::repeat_n(0.0, 5 * (columns + 1)));
-        }
-        self.codes.extend(std::iter::repeat_n(0, 2 * (values.len() - real)));
+        // Beyond the last node of the last row, where it is read with weight 0.
+        self.codes.extend(std::iter::repeat_n(0, 2 * shapes));
         let columns = self.numbers(offsets, starts);
         let cells = f64::from(part.masking_cells);
         let masking = self.coded(offsets, &part.masking, MASKING.map(|x| x / cells));
@@ -169,7 +169,7 @@ impl Block {
         };
         let [rests, starts] = self.coded(offsets, &scaled, [AREA; 4]);
         let rests = [rests, starts, self.numbers(offsets, largest)];
-        let across = self.across(offsets, &part.across);
+        let across = self.coded(offsets, &part.across, ACROSS);
         let rhos = self.numbers(offsets, part.rhos.as_flattened().iter().copied());
         let lines = part.lines;
         let per_row = if part.rhos.is_empty() { 0.0 } else { part.heavy_per_row };
@@ -200,7 +200,7 @@ impl Block {
             Group([shapes, part.across.shapes, part.masking.shapes].map(whole).into()),
             Whole(slopes),
             Whole(columns),
-            Whole(across),
+            Group(across.map(Whole).into()),
             Group(masking.map(Whole).into()),
             Group(rests.map(Whole).into()),
             Whole(rhos),
@@ -231,40 +231,35 @@ impl Block {
         at as u32
     }
 
-    /// Adds slopes across, with a place of zeros after the last, which is read with weight 0; or
-    /// finds them, which two parts may have in common.
-    fn across(&mut self, offsets: &Offsets, table: &ByShape<2>) -> u32 {
-        let zeros = std::iter::repeat_n(0.0, 2 * table.shapes);
-        let numbers = table.values.as_flattened().iter().copied().chain(zeros);
-        let all: Vec<f32> = numbers.map(short).collect();
-        match self.numbers.windows(all.len()).position(|window| window == all) {
-            Some(at) => (offsets.numbers_at + 4 * at) as u32,
-            None => self.numbers(offsets, all),
-        }
-    }
-
     /// Adds a table as codes, and start and step of them by place and channel; a place of zeros
-    /// follows, which is read with weight 0. Returns both offsets.
+    /// follows, which is read with weight 0. Or finds those of an equal table: parts may have one
+    /// in common. Returns both offsets.
     fn coded<const N: usize>(
         &mut self,
         offsets: &mut Offsets,
         table: &ByShape<N>,
         tolerances: [f64; N],
     ) -> [u32; 2] {
-        let codes = offsets.codes(self.codes.len());
-        let mut columns = Vec::new();
+        let (mut codes, mut columns) = (Vec::new(), Vec::new());
         for place in table.values.chunks_exact(table.shapes.max(1)) {
             let of: [Codes; N] = std::array::from_fn(|i| {
                 Codes::of(place.iter().map(|value| value[i]), tolerances[i])
             });
             for value in place {
-                self.codes.extend(of.iter().zip(value).map(|(of, &x)| of.code(x)));
+                codes.extend(of.iter().zip(value).map(|(of, &x)| of.code(x)));
             }
-            columns.extend(of.iter().flat_map(|of| [of.start, of.step]));
+            columns.extend(of.iter().flat_map(|of| [of.start, of.step]).map(short));
         }
-        self.codes.extend(std::iter::repeat_n(0, N * table.shapes));
+        codes.extend(std::iter::repeat_n(0, N * table.shapes));
         columns.extend(std::iter::repeat_n(0.0, 2 * N));
-        [codes, self.numbers(offsets, columns)]
+        let found = self.codes.windows(codes.len().max(1)).position(|window| window == codes);
+        let same = self.numbers.windows(columns.len()).position(|window| window == columns);
+        if let (Some(codes), Some(columns)) = (found, same) {
+            return [offsets.codes(codes), (offsets.numbers_at + 4 * columns) as u32];
+        }
+        let at = offsets.codes(self.codes.len());
+        self.codes.extend(codes);
+        [at, self.numbers(offsets, columns)]
     }
 }
 

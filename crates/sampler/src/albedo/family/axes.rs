@@ -151,6 +151,9 @@ pub(super) struct View {
 impl View {
     pub(super) const CELLS: usize = 26;
     const SHARE: f32 = 0.55;
+    /// Of either root, in cells.
+    pub(super) const SHARES: [f32; 2] =
+        [Self::SHARE * Self::CELLS as f32, (1.0 - Self::SHARE) * Self::CELLS as f32];
 
     /// κ = 6 + 1/d follows the range of masking as that grows for γ → 3/2.
     #[inline(always)]
@@ -173,14 +176,12 @@ impl View {
     /// In cells.
     #[inline(always)]
     fn coordinate(self, cos: f32) -> f32 {
-        const SHARES: [f32; 2] =
-            [View::SHARE * View::CELLS as f32, (1.0 - View::SHARE) * View::CELLS as f32];
         let sin = sqrt(1.0 - cos * cos);
         // Both fractions of x are times d, so that no division waits for another.
         let [part, rest, one] =
             [self.shape, self.knee, self.shape * cos].map(|x| f32x4::from([x, 1.0, 1.0, 1.0]));
         let [x, h, ..] = ((part * cos) / (one + rest * sin)).sqrt().sqrt().to_array();
-        SHARES[0] * x + SHARES[1] * h
+        Self::SHARES[0] * x + Self::SHARES[1] * h
     }
 
     /// h^¼ of the nodes, ascending from 0 to 1.

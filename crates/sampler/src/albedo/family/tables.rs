@@ -33,8 +33,8 @@ pub struct VolumeTables {
 impl VolumeTables {
     /// Coefficients along the shape, and along the view.
     pub const SIZES: [usize; 2] = [SHAPES, VIEWS];
-    /// Cells along the view.
-    pub const VIEW_CELLS: usize = View::CELLS;
+    /// What the fourth roots of x and h of a view are multiplied by in its coordinate, in cells.
+    pub const VIEW_SHARES: [f32; 2] = View::SHARES;
 
     /// Those of a volume.
     #[must_use]
