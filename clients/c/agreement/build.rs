@@ -58,7 +58,8 @@ fn main() {
         }
         build.define("PREFIX", prefix).includes([&folder, &out]);
         build.files(
-            ["lookups", "families", "interfaces", "materials"].map(|name| format!("src/{name}.c")),
+            ["lookups", "families", "interfaces", "materials", "pictures"]
+                .map(|name| format!("src/{name}.c")),
         );
         build.compile(&format!("{prefix}lookups"));
     }

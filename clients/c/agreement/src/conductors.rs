@@ -5,6 +5,8 @@
 //! closed form, which is written down once more here, in double precision; those conductors
 //! themselves, whose E is an approximation, are compared where it is good.
 
+mod points;
+
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_1_PI, LN_2, TAU};
 
@@ -14,40 +16,7 @@ use microfacet_sampler::{
     Bsdf, BsdfSettings, Compensation, Conductor, ConductorFresnel, Family, Ggx, Lobe, Masking,
     MicrofacetDistribution, Tables, Transport,
 };
-use rand::rngs::StdRng;
-use rand::{RngExt, SeedableRng};
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug)]
-pub struct Point {
-    sigma: [f32; 2],
-    v: [f32; 3],
-    l: [f32; 3],
-    choice: f32,
-    u: [f32; 2],
-    a: [f32; 3],
-    b: [f32; 3],
-    form: i32,
-    masking: i32,
-    compensation: i32,
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Answer {
-    event: i32,
-    is_delta: i32,
-    light: [f32; 3],
-    normal: [f32; 3],
-    weight: [f32; 3],
-    pdf: f32,
-    eta: f32,
-    f: [f32; 3],
-    density: f32,
-    sampled_f: [f32; 3],
-    sampled_density: f32,
-    average: [f32; 3],
-}
+use points::{Answer, Point, corners, random};
 
 unsafe extern "C" {
     fn c_conductors(shape: usize, count: usize, points: *const Point, answers: *mut Answer);
@@ -475,97 +444,4 @@ struct Expected<'a> {
     broad_off: &'a dyn Fn([f32; 3]) -> f64,
     log_off: &'a dyn Fn(f64) -> f64,
     conductor: &'a Conductor<Lobe, 3>,
-}
-
-/// Random points, sixty a roughness.
-fn random(count: usize, seed: u64) -> Vec<Vec<Point>> {
-    let mut rng = StdRng::seed_from_u64(1000 + seed);
-    let mut between = move |low: f32, high: f32| low + (high - low) * rng.random::<f32>();
-    let mut groups = Vec::new();
-    for i in 0..count.div_ceil(60) {
-        let ends = if i % 4 == 0 { [-8.0, 6.0] } else { [-2.5, 0.5] };
-        let mut sigma = || 10.0_f32.powf(between(ends[0], ends[1]));
-        let (x, y) = (sigma(), sigma());
-        let sigma = if i % 3 == 0 { [x, y] } else { [x, x] };
-        let points = (0..60).map(|k: usize| {
-            let mut direction = |k: usize| {
-                let near = 10.0_f32.powf(between(-5.0, -1.0));
-                let z = [between(0.0, 1.0), near, between(0.0, 1.0), 1.0 - near][k % 4];
-                let (sin, cos) = between(0.0, std::f32::consts::TAU).sin_cos();
-                let r = ((1.0 - z) * (1.0 + z)).sqrt();
-                [r * cos, r * sin, z]
-            };
-            let (v, l) = (direction(k), direction(k / 4));
-            let form = k % 3;
-            let mut three = |low: f32, high: f32| [0; 3].map(|_| between(low, high));
-            let [a, b] =
-                if form == 2 { [three(0.05, 4.0), three(0.0, 8.0)] } else { [three(0.0, 1.0); 2] };
-            let b = if form == 1 { three(0.0, 1.0) } else { b };
-            Point {
-                sigma,
-                v,
-                l,
-                a,
-                b,
-                choice: between(0.0, 1.0),
-                u: [between(0.0, 1.0), between(0.0, 1.0)],
-                form: form as i32,
-                masking: (k / 3 % 2) as i32,
-                compensation: (k / 6 % 3) as i32,
-            }
-        });
-        groups.push(points.collect());
-    }
-    groups
-}
-
-/// Special roughnesses, directions and numbers.
-fn corners() -> Vec<Vec<Point>> {
-    const NAN: f32 = f32::NAN;
-    let sigmas = [0.0, 1e-8, 5e-4, 0.01, 0.3, 3.0, 1e6].map(|sigma| [sigma; 2]);
-    let at = |z: f32| [0.6 * (1.0 - z * z).sqrt(), -0.8 * (1.0 - z * z).sqrt(), z];
-    let directions = [
-        [0.0, 0.0, 1.0],
-        at(1e-6),
-        at(0.3),
-        at(0.0),
-        at(-0.3),
-        [0.0, 0.0, -1.0],
-        [NAN, 0.0, 0.5],
-        [0.0, 0.6, NAN],
-        [NAN; 3],
-        [f32::INFINITY, 0.0, 0.5],
-        [0.0; 3],
-    ];
-    let numbers = [0.0, 1.0, 0.4, NAN, -1.0, 2.0];
-    let group = |sigma: [f32; 2]| {
-        let mut points = Vec::new();
-        for (i, v) in directions.into_iter().enumerate() {
-            for (j, l) in directions.into_iter().enumerate() {
-                for (k, choice) in numbers.into_iter().enumerate() {
-                    for form in 0..3 {
-                        let turn = i + j + k + form as usize;
-                        let u = [numbers[(turn + j) % 6], numbers[(turn / 2 + k) % 6]];
-                        let [a, b] = [[0.0, 0.5, 1.0], [1.0, 0.5, 0.0]];
-                        let a = if form == 2 { [2e-6, 1.0, 1.5] } else { a };
-                        let (masking, compensation) = (turn as i32 % 2, (i + k) as i32 % 3);
-                        points.push(Point {
-                            sigma,
-                            v,
-                            l,
-                            choice,
-                            u,
-                            a,
-                            b,
-                            form,
-                            masking,
-                            compensation,
-                        });
-                    }
-                }
-            }
-        }
-        points
-    };
-    sigmas.map(group).into()
 }

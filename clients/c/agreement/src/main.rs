@@ -9,6 +9,7 @@ mod conductors;
 mod families;
 mod foreign;
 mod interfaces;
+mod picture;
 mod timing;
 
 use std::process::ExitCode;
@@ -41,6 +42,7 @@ fn main() -> ExitCode {
     let good = families::agree(count, family) & good;
     let good = interfaces::agree(&gammas, count, Some(glass)) & good;
     let good = conductors::agree(&gammas, count.div_ceil(4)) & good;
+    let good = picture::agree() & good;
     println!("times in relation to the crate's, sigma 0.5");
     for gamma in [3.0, 1.65, 2.0] {
         if let Some(shape) = gammas.iter().position(|&g| g == gamma) {

@@ -78,15 +78,15 @@ STUDENT_T_FUNCTION void student_t_impl_albedo_of(const student_t_lobe *lobe,
     /* What the other kind of tables needs stays 0: compilers warn of copies of what is not set. */
     *a = none;
     a->less = student_t_impl_min(2.0f * lobe->gamma - 3.0f, 1e30f);
-    if (lobe->family) {
-        const student_t_volume *t = &lobe->family->albedo[form];
+    if (lobe->albedos) {
+        const student_t_volume *t = &lobe->albedos->albedo[form];
         const float s =
             student_t_impl_min(student_t_impl_max(stand_in, t->sigmas[0]), t->sigmas[1]);
         const float d = student_t_impl_min(student_t_impl_max(a->less, t->shapes[0]), t->shapes[1]);
         const float octaves = student_t_impl_octaves(s);
         const float shape = sqrtf(sqrtf(d / (d + 3.0f)));
         const float sigma = student_t_impl_octaves(1.0f + 60.0f * s) + 0.2f * octaves + s;
-        a->family = lobe->family;
+        a->family = lobe->albedos;
         a->volume = t;
         a->less = d;
         a->sigma = s;

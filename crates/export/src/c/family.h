@@ -86,6 +86,7 @@ STUDENT_T_FUNCTION void student_t_family_set_lobe(const student_t_family *family
     lobe->shape = STUDENT_T_IMPL_NULL;
     lobe->family = family;
     lobe->part = part;
+    lobe->albedos = family;
     student_t_impl_window_at(between, 0, x, &lobe->slopes);
     student_t_impl_window_at(between, 1, x, &lobe->across);
     student_t_impl_window_at(between, 2, x, &lobe->masking);

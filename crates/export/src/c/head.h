@@ -54,6 +54,9 @@
  * An array that is written must not be one that is read.
  *
  * Albedos cost as much as some normals: look each up once, and that of a view for all its lights.
+ * Those of single shapes are exact curves, and take three times as long as those of a family. With
+ * STUDENT_T_FITTED_ALBEDO defined beforehand, and student_t_family.h included, they are read from
+ * the family, too. Define it in all translation units of a program or in none.
  * They are those of round lobes. Where sigma_x and sigma_y differ, that of sqrt(sigma_x
  * sigma_y) stands in. It is off by some 0.07 where one is twice the other, and by up to 0.6, and
  * the compensating lobe then gives back so much too little or too much. All else is exact.
@@ -243,8 +246,7 @@ typedef struct student_t_impl_window {
 } student_t_impl_window;
 
 /* The lobe of one gamma and roughness: what a renderer makes at a hit, and hands to the functions
- * below. Of its members gamma, sigma_x and
- * sigma_y are for users, to read. */
+ * below. Of its members gamma, sigma_x and sigma_y are for users, to read. */
 typedef struct student_t_lobe {
     float sigma_x;           /* in [1e-8, 1e6] */
     float gamma;             /* the largest finite number for infinity */
@@ -257,6 +259,7 @@ typedef struct student_t_lobe {
     const student_t_shape *shape;   /* its tables, or those of a family: */
     const student_t_family *family;
     const student_t_part *part;
+    const student_t_family *albedos; /* whose fitted volume is its E; null: the shape's own curve */
     student_t_impl_window slopes, across, masking;
 } student_t_lobe;
 

@@ -7,6 +7,13 @@ STUDENT_T_FUNCTION float student_t_impl_sigma(float sigma)
     return student_t_impl_min(student_t_impl_max(sigma, 1e-8f), 1e6f);
 }
 
+#ifdef STUDENT_T_FITTED_ALBEDO
+#define STUDENT_T_IMPL_ALBEDOS student_t_family_here()
+STUDENT_T_FUNCTION const student_t_family *student_t_family_here(void);
+#else
+#define STUDENT_T_IMPL_ALBEDOS STUDENT_T_IMPL_NULL
+#endif
+
 /* Fills in the lobe of a shape: in place, since a copy would wait for what was written last. */
 STUDENT_T_FUNCTION void student_t_impl_make(student_t_lobe *lobe, const student_t_shape *shape,
                                             float sigma_x, float sigma_y)
@@ -22,6 +29,7 @@ STUDENT_T_FUNCTION void student_t_impl_make(student_t_lobe *lobe, const student_
     lobe->shape = shape;
     lobe->family = STUDENT_T_IMPL_NULL;
     lobe->part = STUDENT_T_IMPL_NULL;
+    lobe->albedos = STUDENT_T_IMPL_ALBEDOS;
     lobe->slopes = lobe->across = lobe->masking = none;
 }
 
