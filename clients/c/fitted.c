@@ -1,7 +1,7 @@
 /* Reads E of a single shape from a family's fitted volume: one file compiled twice, with
- * -DSTUDENT_T_FITTED_ALBEDO and without, whose albedos are compared at random roughnesses and views.
- * Prints the largest difference of E and of its parts, and the time of one E over that of the exact
- * curve; exit status 1 if a difference is above what docs/export.md allows. */
+ * -DSTUDENT_T_FITTED_ALBEDO and without, whose albedos are compared at random roughnesses and
+ * views. Prints the largest difference of E and of its parts, and the time of one E over that of
+ * the exact curve; exit status 1 if a difference is above what docs/export.md allows. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
