@@ -389,6 +389,9 @@ fn layouts_are_written() {
     }
     let three = notes(&["three", "--size", "8x8", "--gamma", "3"]);
     assert!(three.contains("has 16x16 texels: change its constants"), "{three}");
+    // The engine's own lobe and filter are another's.
+    assert!(three.contains("GGX as its lobe") && three.contains("gamma = 3"), "{three}");
+    assert!(!babylon.contains("GGX as its lobe"), "{babylon}");
 }
 
 #[test]

@@ -221,6 +221,12 @@ fn of_engine(layout: &Layout, args: &Args) -> Result<()> {
     let textures = make(&specs, false, |spec, [values, _]| Ok(spec.make(values)?))?;
     super::write(&out, &layout.files(&textures).map_err(Failure::msg)?)?;
     note(format!("{engine}: {}", layout.advice));
+    if gamma != 2.0 {
+        note(format!(
+            "{engine} has GGX as its lobe, and filters environments by it: give both gamma = \
+             {gamma} as well (docs/ibl.md), else the energy of this table is not theirs"
+        ));
+    }
     Ok(())
 }
 

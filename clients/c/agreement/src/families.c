@@ -49,3 +49,14 @@ EXPORT void NAME(family)(const void *bytes, unsigned size, size_t count, const h
         }
     }
 }
+
+/* Lights of a view along the normal; [count] numbers, and as many pairs and triples. */
+EXPORT void NAME(prefilter)(size_t count, const float *u, const float *sigma, const float *gamma,
+                            float *l, float *pdf);
+
+EXPORT void NAME(prefilter)(size_t count, const float *u, const float *sigma, const float *gamma,
+                            float *l, float *pdf)
+{
+    for (size_t i = 0; i < count; ++i)
+        pdf[i] = student_t_prefilter_light(u + 2 * i, sigma[i], gamma[i], l + 3 * i);
+}

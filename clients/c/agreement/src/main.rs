@@ -10,6 +10,7 @@ mod families;
 mod foreign;
 mod interfaces;
 mod picture;
+mod prefilter;
 mod timing;
 
 use std::process::ExitCode;
@@ -42,6 +43,7 @@ fn main() -> ExitCode {
     let good = families::agree(count, family) & good;
     let good = interfaces::agree(&gammas, count, Some(glass)) & good;
     let good = conductors::agree(&gammas, count.div_ceil(4)) & good;
+    let good = prefilter::agree(count) & good;
     let good = picture::agree() & good;
     println!("times in relation to the crate's, sigma 0.5");
     for gamma in [3.0, 1.65, 2.0] {

@@ -22,6 +22,7 @@ const HEADER: &str = concat!(
     include_str!("family.h"),
     include_str!("masking.h"),
     include_str!("normals.h"),
+    include_str!("prefilter.h"),
     include_str!("albedo.h"),
     include_str!("shape.h"),
     "\n#endif\n"
