@@ -153,7 +153,10 @@ window.compare = (functions, gamma) => {
         const alpha = roughness * roughness;
         const truth = directions.map(n => (alpha > 1e-4 ? integral(n, alpha, gamma) : sky(n)));
         return {
-            alpha, truth, own: read(own, directions, level), changed: read(changed, directions, level),
+            alpha,
+            truth,
+            own: read(own, directions, level),
+            changed: read(changed, directions, level),
         };
     });
 };
