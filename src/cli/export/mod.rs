@@ -56,6 +56,9 @@ enum TargetArg {
     /// Functions in the Metal Shading Language.
     #[command(aliases = ["MSL", "metal"])]
     Msl(shape::ShaderArgs),
+    /// A differentiable module of Slang: also CUDA and C++.
+    #[command(aliases = ["SLANG"])]
+    Slang(shape::ShaderArgs),
     /// A program for Vulkan that samples visible normals.
     #[command(aliases = ["SPIRV", "SPIR-V", "spir-v", "spv"])]
     Spirv(shape::ShaderArgs),
@@ -74,6 +77,7 @@ pub(super) fn run(args: Args) -> Result<()> {
         TargetArg::GlslEs(args) => (Language::GlslEs, args),
         TargetArg::Hlsl(args) => (Language::Hlsl, args),
         TargetArg::Msl(args) => (Language::Msl, args),
+        TargetArg::Slang(args) => (Language::Slang, args),
         TargetArg::Spirv(args) => (Language::SpirV, args),
         TargetArg::Other(words) => {
             let targets = TargetArg::augment_subcommands(clap::Command::new("export"));

@@ -16,6 +16,8 @@ pub enum Language {
     Hlsl,
     /// The Metal Shading Language 2.0.
     Msl,
+    /// Slang, which compiles to all of these, to CUDA and to C++, with derivatives.
+    Slang,
     /// SPIR-V 1.3, of Vulkan: a program that reflects views, since Vulkan links no functions.
     SpirV,
 }
@@ -44,15 +46,16 @@ impl Language {
             Self::GlslEs => ["glsl", "frag"],
             Self::Hlsl => ["hlsl", "hlsl"],
             Self::Msl => ["metal", "metal"],
+            Self::Slang => ["slang", "slang"],
             Self::SpirV => ["spv", "wgsl"],
         }
     }
 
     /// The module, of SPIR-V the program, as `clients/gpu` translates it; none of WGSL, which it
-    /// is translated from.
+    /// is translated from, and of Slang, which is made of HLSL.
     pub(super) fn translation(self, storage: Storage) -> Option<&'static [u8]> {
         Some(match (self, storage) {
-            (Self::Wgsl, _) => return None,
+            (Self::Wgsl | Self::Slang, _) => return None,
             (Self::Glsl, Storage::Buffer) => include_bytes!("translated/buffer.glsl"),
             (Self::Glsl, Storage::Texture) => include_bytes!("translated/texture.glsl"),
             (Self::GlslEs, _) => for_webgl().as_bytes(),
@@ -73,6 +76,7 @@ impl Language {
             Self::GlslEs => include_str!("samples/sample.frag"),
             Self::Hlsl => include_str!("samples/sample.hlsl"),
             Self::Msl => include_str!("samples/sample.metal"),
+            Self::Slang => include_str!("samples/sample.slang"),
         };
         match (self, storage) {
             (Self::Msl, Storage::Texture) => {
@@ -93,6 +97,7 @@ impl Language {
             Self::GlslEs => "GLSL ES 3.0 and later (WebGL 2, OpenGL ES)",
             Self::Hlsl => "HLSL (shader model 6.0 and later)",
             Self::Msl => "the Metal Shading Language 2.0",
+            Self::Slang => "Slang (2026 and later), differentiable",
             Self::SpirV => "SPIR-V",
         }
     }
@@ -147,6 +152,20 @@ fn binding(language: Language, storage: Storage) -> String {
         Language::Msl => {
             "// Functions have one argument more than below, the last: the tables, as your kernel gets them.
 // Include this text, as in student_t_sample.metal."
+        }
+        Language::Slang => {
+            "// The compiler places them; programs find them as student_t_tables by reflection. To choose the
+// place, write [[vk::binding(3, 1)]] before the line that declares them, and : register(t3, space1)
+// at its end. Have this file where modules are searched for, and import student_t, as in
+// student_t_sample.slang.
+//
+// Derivatives. All functions have them with respect to all numbers: sigma, directions, cosines, u.
+// They are those of the branch that is taken: 0 where an argument or a result is at the end of its
+// range, and of albedos those of polynomials, which have corners at nodes. A sampled normal has
+// those for given u. shape has none, since tables are of one gamma each. Slang has one function
+// more,
+//     student_t_d_of_gamma(gamma: f32, sigma, m) -> f32
+//         D(m) of any gamma without tables, which has them with respect to gamma too"
         }
         Language::SpirV => "",
     };

@@ -2,6 +2,7 @@
 
 mod data;
 mod language;
+mod slang;
 
 use std::fmt::Write;
 
@@ -39,7 +40,8 @@ pub(super) fn files(language: Language, storage: Storage, shapes: &[Shape]) -> V
         Language::SpirV => String::new(),
         _ => format!("{}\n", head(&name, language, storage)),
     };
-    let translation = language.translation(storage).unwrap_or(module.as_bytes());
+    let text = if language == Language::Slang { slang::module(storage) } else { module };
+    let translation = language.translation(storage).unwrap_or(text.as_bytes());
     let contents = [head.as_bytes(), translation].concat();
     let sample = ExportFile::new(format!("{NAME}_sample.{of_sample}"), sample);
     let mut files = vec![ExportFile::new(name, contents), sample];
@@ -165,7 +167,7 @@ mod tests {
         for storage in [Storage::Buffer, Storage::Texture] {
             let text = module(&lists, storage);
             assert!(text == module(&heavy, storage) && text == module(&closed, storage));
-            for language in [Language::Wgsl, Language::GlslEs, Language::Msl] {
+            for language in [Language::Wgsl, Language::GlslEs, Language::Msl, Language::Slang] {
                 let head = head("student_t.metal", language, storage);
                 for line in head.lines().chain(text.lines()) {
                     assert!(line.len() <= 100, "{line}");

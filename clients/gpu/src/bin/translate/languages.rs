@@ -50,7 +50,7 @@ fn text(wgsl: &str, language: Language, storage: Storage) -> String {
         }
         Language::Hlsl => guarded(&bindable_hlsl(&hlsl(&module, &info))),
         Language::Msl => guarded(&includable_msl(&msl(&module, &info), storage)),
-        Language::Wgsl | Language::SpirV => panic!("no translation into text"),
+        Language::Wgsl | Language::Slang | Language::SpirV => panic!("no translation into text"),
     }
 }
 
