@@ -165,10 +165,16 @@ fn other_sets_are_exported_with_what_they_lack() {
 fn bad_requests_are_refused_with_a_remedy_and_write_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    let cases: [(&[&str], &[&str]); 9] = [
+    let cases: [(&[&str], &[&str]); 15] = [
         (&["wgsl", "--gamma", "3", "--tables", "nowhere"], &["nowhere", "no such file", "bake"]),
         (&["cobol", "--gamma", "3"], &["cobol", "they are c, wgsl, glsl, glsl-es, hlsl"]),
         (&["c", "--gamma", "3", "--textures"], &["--textures"]),
+        (&["glsl", "--gamma", "3", "--group", "#{GROUP}"], &["#{GROUP} must be a number here"]),
+        (&["wgsl", "--gamma", "3", "--group", "two"], &["'two'", "must be", "#{MATERIAL_BIND"]),
+        (&["glsl-es", "--gamma", "3", "--binding", "2"], &["uniform student_t_tables"]),
+        (&["msl", "--gamma", "3", "--group", "2"], &["argument of its functions"]),
+        (&["hlsl", "--gamma", "3", "--import-path", "a"], &["leave out --import-path"]),
+        (&["wgsl", "--gamma", "3", "--import-path", "a b"], &["'a b'", "must be names"]),
         (&["wgsl", "--gamma", "1.5001"], &["1.5001", "below 1.501", "raise"]),
         (&["c", "--gamma", "1.5"], &["(1.5, inf]"]),
         (&["c", "--gamma", "1.5001"], &["1.5001", "below 1.501", "raise"]),
@@ -267,6 +273,69 @@ fn every_language_has_all_functions_a_sample_and_data() {
     assert_eq!(words[..4], 0x0723_0203_u32.to_le_bytes());
     let entry = b"reflect_views";
     assert!(words.windows(entry.len()).any(|window| window == entry));
+}
+
+#[test]
+fn shaders_have_tables_where_the_host_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let group = "#{MATERIAL_BIND_GROUP}";
+    let bevy = ["--group", group, "--binding", "110", "--import-path", "student_t"];
+    let export = |language: &str, out: &str, options: &[&str]| {
+        let words = ["export", language, "--gamma", "2", "--out", out, "--no-albedo"];
+        ok(at, &[&words, options].concat());
+    };
+    let text = |name: &str| fs::read_to_string(at.join(name)).unwrap();
+    export("wgsl", "bevy", &bevy);
+    let module = text("bevy/student_t.wgsl");
+    assert!(module.starts_with("#define_import_path student_t\n// SPDX"), "{module}");
+    let line = |binding: u32, rest: &str| {
+        format!("@group(#{{MATERIAL_BIND_GROUP}}) @binding({binding}) var<{rest}")
+    };
+    let tables = line(110, "storage, read> student_t_tables:");
+    assert!(module.contains(&tables) && !module.contains("@group(0)"), "{module}");
+    let sample = text("bevy/student_t_sample.wgsl");
+    for line in [line(111, "storage, read> queries"), line(112, "storage, read_write> answers")] {
+        assert!(sample.contains(&line), "{sample}");
+    }
+
+    let place = ["--group", "1", "--binding", "1"];
+    export("glsl", "glsl", &place);
+    export("hlsl", "hlsl", &place);
+    let cases = [
+        ("glsl/student_t.glsl", &["STUDENT_T_BINDING layout(std430, set = 1, binding = 1)\n"][..]),
+        (
+            "glsl/student_t_sample.comp",
+            &[
+                "layout(std430, set = 1, binding = 2) readonly buffer",
+                "layout(std430, set = 1, binding = 3) writeonly buffer",
+            ],
+        ),
+        ("hlsl/student_t.hlsl", &["#define STUDENT_T_REGISTER t1, space1\n"]),
+        ("hlsl/student_t_sample.hlsl", &["register(t2, space1)", "register(u3, space1)"]),
+    ];
+    for (name, parts) in cases {
+        let text = text(name);
+        assert!(parts.iter().all(|part| text.contains(part)), "{name}: {text}");
+    }
+    // OpenGL has no sets.
+    export("glsl", "opengl", &["--binding", "3", "--textures"]);
+    assert!(text("opengl/student_t.glsl").contains("STUDENT_T_BINDING layout(binding = 3)\n"));
+    // The host's own precision is left as it is.
+    export("glsl-es", "es", &[]);
+    assert!(!text("es/student_t.glsl").lines().any(|line| line.starts_with("precision")));
+}
+
+#[test]
+fn shapes_for_shaders_may_lack_albedos() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    ok(at, &["export", "wgsl", "--gamma", "3", "--out", "all"]);
+    ok(at, &["export", "wgsl", "--gamma", "3", "--no-albedo", "--out", "bare"]);
+    let size = |folder: &str| fs::metadata(at.join(folder).join("student_t.bin")).unwrap().len();
+    assert!(size("bare") * 2 < size("all"), "{} of {}", size("bare"), size("all"));
+    let tables = &json(&at.join("bare/student_t.json"))["shapes"]["3"]["tables"];
+    assert!(tables.get("masking").is_some() && tables.get("albedo_uncorrelated").is_none());
 }
 
 #[test]

@@ -80,7 +80,7 @@ impl AlbedoTable {
         Some(table)
     }
 
-    /// Without its values: lookups in C then take the surface for a mirror.
+    /// Without its values: lookups then take the surface for a mirror.
     pub(super) fn leave_out(&mut self) {
         (self.values, self.averages) = (Vec::new(), Vec::new());
     }

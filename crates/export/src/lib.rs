@@ -11,7 +11,7 @@
 //! use microfacet_sampler::Tables;
 //!
 //! let shape = Shape::bind(&Tables::embedded(), 3.0)?;
-//! let names = files(Target::C, &[shape]).into_iter().map(|file| file.name);
+//! let names = files(&Target::C, &[shape]).into_iter().map(|file| file.name);
 //! let functions = ["student_t.h", "student_t_materials.h", "student_t.hpp"];
 //! assert_eq!(names.collect::<Vec<_>>(), [&functions[..], &["student_t_gamma_3.h"]].concat());
 //! # Ok::<(), microfacet_sampler::MaterialError>(())
@@ -31,17 +31,18 @@ pub mod texture;
 pub use albedo::AlbedoTable;
 pub use family::Family;
 pub use members::Part;
-pub use shader::{Language, Storage, texture_rows};
+pub use shader::{Group, Host, Language, Storage, texture_rows};
 pub use shader::{WIDTH, append_some, for_webgl, wgsl_crc32};
 pub use shape::Shape;
 
 /// The language of an export.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Target {
     /// Headers for C99, C++11, CUDA and HIP.
     C,
-    /// A shader module, with its tables as data.
-    Shader(Language, Storage),
+    /// A shader module, with its tables as data. The language must have what the host asks for
+    /// ([`Host::check`]).
+    Shader(Language, Storage, Host),
 }
 
 /// A file of an export.
@@ -78,10 +79,10 @@ fn open_exr(
 ///
 /// # Panics
 /// If there are no shapes for shaders.
-pub fn files(target: Target, shapes: &[Shape]) -> Vec<ExportFile> {
+pub fn files(target: &Target, shapes: &[Shape]) -> Vec<ExportFile> {
     match target {
         Target::C => c::files(shapes),
-        Target::Shader(language, storage) => shader::files(language, storage, shapes),
+        Target::Shader(language, storage, host) => shader::files(*language, *storage, host, shapes),
     }
 }
 

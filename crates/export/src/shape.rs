@@ -75,7 +75,7 @@ impl Shape {
         })
     }
 
-    /// Leaves out the albedos, for exports to C.
+    /// Leaves out the albedos: functions then take the surface for a mirror.
     pub fn leave_out_albedos(&mut self) {
         self.albedos.iter_mut().for_each(AlbedoTable::leave_out);
     }

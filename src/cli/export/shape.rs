@@ -5,15 +5,15 @@ use std::path::PathBuf;
 use microfacet_baker::store::OutputFolder;
 use microfacet_core::Masking;
 use microfacet_export::{
-    ExportFile, Family, Language, Shape, Storage, Target, family_file, files, interface_file,
-    texture_rows,
+    ExportFile, Family, Group, Host, Language, Shape, Storage, Target, family_file, files,
+    interface_file, texture_rows,
 };
 use microfacet_sampler::Tables;
 use microfacet_sampler::port::interface_tables;
 use microfacet_tables::SIGMA_MAX;
 
 use crate::cli::words::distinct;
-use crate::cli::{Result, note, tables, values};
+use crate::cli::{Result, anyhow, note, tables, values};
 
 /// Where tables come from and files go to.
 #[derive(clap::Args)]
@@ -71,6 +71,32 @@ pub(super) struct ShaderArgs {
     /// Have a shader read its tables from a texture, not from a buffer. GLSL ES has no other way.
     #[arg(long)]
     textures: bool,
+    /// Leave out directional albedos, which compensation of multiple scattering needs: half of the
+    /// data, and more.
+    #[arg(long)]
+    no_albedo: bool,
+    /// Group of the tables in WGSL, set in GLSL and SPIR-V, space in HLSL; 0 by default. In WGSL
+    /// also what a preprocessor replaces, such as #{MATERIAL_BIND_GROUP}.
+    #[arg(long, value_name = "GROUP")]
+    group: Option<Group>,
+    /// Binding of the tables in the group, or register in HLSL; the programs that come with them
+    /// use the two after it.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::count::<u16>(0..=65533))]
+    binding: u16,
+    /// Path by which naga_oil, as in Bevy, imports the module of WGSL, such as student_t.
+    #[arg(long, value_name = "NAME", value_parser = path_of_import)]
+    import_path: Option<String>,
+}
+
+/// Parses names with `::` between them.
+fn path_of_import(text: &str) -> Result<String, String> {
+    let is_name = |name: &str| {
+        name.starts_with(|c: char| c.is_ascii_alphabetic())
+            && name.bytes().all(|c| c.is_ascii_alphanumeric() || c == b'_')
+    };
+    text.split("::").all(is_name).then(|| text.into()).ok_or_else(|| {
+        format!("\"{text}\" must be names with :: between them, as student_t or brdf::student_t")
+    })
 }
 
 /// Rows of a texture that every device of WebGL 2 supports.
@@ -78,7 +104,13 @@ const PROMISED_ROWS: usize = 2048;
 
 pub(super) fn shader(language: Language, args: &ShaderArgs) -> Result<()> {
     let storage = if args.textures { Storage::Texture } else { Storage::Buffer };
-    let shapes = bind(&tables(args.ends.tables.as_deref())?, &args.gamma)?;
+    let (group, import_path) = (args.group.clone(), args.import_path.clone());
+    let host = Host { group, binding: args.binding, import_path };
+    host.check(language).map_err(|why| anyhow!(why))?;
+    let mut shapes = bind(&tables(args.ends.tables.as_deref())?, &args.gamma)?;
+    if args.no_albedo {
+        shapes.iter_mut().for_each(Shape::leave_out_albedos);
+    }
     if language.storage(storage) == Storage::Texture
         && let rows = texture_rows(&shapes)
         && rows > PROMISED_ROWS
@@ -88,7 +120,7 @@ pub(super) fn shader(language: Language, args: &ShaderArgs) -> Result<()> {
              shapes in one command for others"
         ));
     }
-    write(&args.ends, &files(Target::Shader(language, storage), &shapes))
+    write(&args.ends, &files(&Target::Shader(language, storage, host), &shapes))
 }
 
 pub(super) fn c(args: &CArgs) -> Result<()> {
@@ -97,7 +129,7 @@ pub(super) fn c(args: &CArgs) -> Result<()> {
     if args.no_albedo {
         shapes.iter_mut().for_each(Shape::leave_out_albedos);
     }
-    let mut written = files(Target::C, &shapes);
+    let mut written = files(&Target::C, &shapes);
     if args.family {
         written.push(family_file(&Family::bind(&set, !args.no_albedo)?, args.binary));
     }

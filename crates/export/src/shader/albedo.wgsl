@@ -51,7 +51,8 @@ fn student_t_impl_albedo_of(shape: u32, sigma: vec2f, masking: u32) -> StudentTI
     let lowest = t.floor * (t.slope * rough) / (t.floor + t.slope * rough);
     let coordinate = student_t_impl_log_growth(rough / t.offset)
         + t.slow * log(rough / t.first) + t.linear * rough;
-    let mirror = !(sigma.x > 0.0 && sigma.y > 0.0);
+    // Without albedos nothing is lost.
+    let mirror = t.values == shape || !(sigma.x > 0.0 && sigma.y > 0.0);
     return StudentTImplAlbedo(t, select(rough, 0.0, mirror), (coordinate - t.start) / t.range,
                               lowest);
 }

@@ -136,16 +136,19 @@ fn binding(language: Language, storage: Storage) -> String {
 // program to this text, as in student_t_sample.wgsl."
         }
         Language::Glsl => {
-            "// To have them elsewhere than at binding 0, define the layout before this text, such as
+            "// To have them elsewhere, define the layout before this text, such as
 //     #define STUDENT_T_BINDING layout({std}set = 1, binding = 3)
 // Include this text after #version, as in student_t_sample.comp; OpenGL, which has no #include,
 // takes the text itself in its place."
         }
         Language::GlslEs => {
-            "// Insert this text between the line of #version and your program, as student_t_sample.frag says."
+            "// Insert this text before your functions, and after
+//     precision highp float;
+//     precision highp int;
+// which stand at the head of your shader, as student_t_sample.frag says: with less it errs."
         }
         Language::Hlsl => {
-            "// To have them elsewhere than at t0, define the register before this text, such as
+            "// To have them elsewhere, define the register before this text, such as
 //     #define STUDENT_T_REGISTER t3, space1
 // Include this text, as in student_t_sample.hlsl."
         }

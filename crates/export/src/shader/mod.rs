@@ -1,6 +1,7 @@
 //! Shader modules: functions written once, in WGSL, and translated into files, which are here too.
 
 mod data;
+mod host;
 mod language;
 mod slang;
 
@@ -12,6 +13,7 @@ use super::members::{Member, Value};
 use super::{ExportFile, Shape};
 pub use data::texture_rows;
 pub use data::{WIDTH, append_some};
+pub use host::{Group, Host};
 use language::head;
 pub use language::{Language, Storage};
 
@@ -30,19 +32,27 @@ const FUNCTIONS: &str = concat!(
 );
 
 /// The module, a program that uses it, and the data.
-pub(super) fn files(language: Language, storage: Storage, shapes: &[Shape]) -> Vec<ExportFile> {
+pub(super) fn files(
+    language: Language,
+    storage: Storage,
+    host: &Host,
+    shapes: &[Shape],
+) -> Vec<ExportFile> {
     let storage = language.storage(storage);
     let module = module(&shapes.first().expect("shapes").lists(), storage);
     let sample = language.sample(storage);
     let [of_module, of_sample] = language.extensions();
     let name = format!("{NAME}.{of_module}");
-    let head = match language {
-        Language::SpirV => String::new(),
-        _ => format!("{}\n", head(&name, language, storage)),
-    };
     let text = if language == Language::Slang { slang::module(storage) } else { module };
     let translation = language.translation(storage).unwrap_or(text.as_bytes());
-    let contents = [head.as_bytes(), translation].concat();
+    let contents = match language {
+        Language::SpirV => host.place_words(translation),
+        _ => {
+            let text = str::from_utf8(translation).expect("text but of SPIR-V");
+            host.place(&format!("{}\n{text}", head(&name, language, storage)), language).into()
+        }
+    };
+    let sample = host.place_bindings(&sample, language);
     let sample = ExportFile::new(format!("{NAME}_sample.{of_sample}"), sample);
     let mut files = vec![ExportFile::new(name, contents), sample];
     data::append_files(shapes, &mut files);

@@ -24,7 +24,8 @@ class Sphere {
         });
         if (!gl || !gl.getExtension('EXT_color_buffer_float')) return false;
         this.gl = gl;
-        const module = `#version 300 es\n${text('sphere-module')}`;
+        const head = '#version 300 es\nprecision highp float;\nprecision highp int;\n';
+        const module = `${head}${text('sphere-module')}`;
         this.program = new Program(gl, module + text('sphere-scene'));
         this.lobes = new Program(gl, module + text('sphere-lobe'));
         this.present = new Program(gl, text('sphere-present'));

@@ -46,7 +46,7 @@ fn text(wgsl: &str, language: Language, storage: Storage) -> String {
             let version = glsl::Version::Embedded { version: 300, is_webgl: true };
             let text = glsl(&module, &info, version, ShaderStage::Fragment);
             let text = renamed(&text, &[("_group_0_binding_0_fs", "student_t_tables")]);
-            without_lines(&text, &["#version"])
+            without_lines(&text, &["#version", "precision "]).trim_start().into()
         }
         Language::Hlsl => guarded(&bindable_hlsl(&hlsl(&module, &info))),
         Language::Msl => guarded(&includable_msl(&msl(&module, &info), storage)),

@@ -10,7 +10,7 @@ use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 
-use microfacet_export::{Language, Shape, Storage, Target, files, wgsl_crc32};
+use microfacet_export::{Host, Language, Shape, Storage, Target, files, wgsl_crc32};
 use microfacet_sampler::Tables;
 
 /// Where they are, in the repository.
@@ -80,7 +80,8 @@ fn main() -> ExitCode {
 
 /// Module and program of an export. They are the same for all shapes.
 fn exported(language: Language, storage: Storage) -> [Vec<u8>; 2] {
-    let mut files = files(Target::Shader(language, storage), &[shape()]).into_iter();
+    let target = Target::Shader(language, storage, Host::default());
+    let mut files = files(&target, &[shape()]).into_iter();
     [0; 2].map(|_| files.next().expect("a module and a program").contents)
 }
 

@@ -1,5 +1,6 @@
 // A program for fragments in WebGL 2: a metal sphere under one distant light. Compile it as
-//     '#version 300 es\n' + the text of student_t.glsl + this text
+//     '#version 300 es\nprecision highp float;\nprecision highp int;\n'
+//         + the text of student_t.glsl + this text
 // over a triangle that covers the view, with the uniforms below.
 
 uniform highp uint shape; // its offset in student_t.json

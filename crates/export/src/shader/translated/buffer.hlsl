@@ -796,6 +796,7 @@ StudentTImplAlbedo ConstructStudentTImplAlbedo(StudentTAlbedoTable arg0, float a
 StudentTImplAlbedo student_t_impl_albedo_of(uint shape_16, float2 sigma_15, uint masking_3)
 {
     bool local_6 = (bool)0;
+    bool local_7 = (bool)0;
 
     const StudentTAlbedoTable _e3 = student_t_impl_albedo_table(shape_16, masking_3);
     const float _e5 = student_t_impl_sigma(sigma_15.x);
@@ -806,13 +807,18 @@ StudentTImplAlbedo student_t_impl_albedo_of(uint shape_16, float2 sigma_15, uint
     float lowest = ((_e3.floor_ * (_e3.slope * _e13)) / (_e3.floor_ + (_e3.slope * _e13)));
     const float _e25 = student_t_impl_log_growth((_e13 / _e3.offset));
     float coordinate = ((_e25 + (_e3.slow * log((_e13 / _e3.first)))) + (_e3.linear_ * _e13));
-    if ((sigma_15.x > 0.0)) {
-        local_6 = (sigma_15.y > 0.0);
+    if (!((_e3.values == shape_16))) {
+        if ((sigma_15.x > 0.0)) {
+            local_7 = (sigma_15.y > 0.0);
+        } else {
+            local_7 = false;
+        }
+        bool _e49 = local_7;
+        local_6 = !(_e49);
     } else {
-        local_6 = false;
+        local_6 = true;
     }
-    bool _e44 = local_6;
-    bool mirror = !(_e44);
+    bool mirror = local_6;
     const StudentTImplAlbedo studenttimplalbedo = ConstructStudentTImplAlbedo(_e3, (mirror ? 0.0 : _e13), ((coordinate - _e3.start) / _e3.range), lowest);
     return studenttimplalbedo;
 }
@@ -956,14 +962,14 @@ float3 student_t_albedo_average_parts(uint shape_20, float2 sigma_19, uint maski
 
 float student_t_compensation(uint shape_21, float2 sigma_20, float3 v_9, float3 l_2, uint masking_9)
 {
-    bool local_7 = (bool)0;
+    bool local_8 = (bool)0;
 
     if ((v_9.z > 0.0)) {
-        local_7 = (l_2.z > 0.0);
+        local_8 = (l_2.z > 0.0);
     } else {
-        local_7 = false;
+        local_8 = false;
     }
-    bool _e14 = local_7;
+    bool _e14 = local_8;
     if (!(_e14)) {
         return 0.0;
     }

@@ -783,6 +783,7 @@ inline StudentTImplAlbedo student_t_impl_albedo_of(
     device const metal::float2* student_t_tables
 ) {
     bool local_6 = {};
+    bool local_7 = {};
     StudentTAlbedoTable _e3 = student_t_impl_albedo_table(shape_16, masking_3, student_t_tables);
     float _e5 = student_t_impl_sigma(sigma_15.x);
     float _e7 = student_t_impl_sigma(sigma_15.y);
@@ -792,13 +793,18 @@ inline StudentTImplAlbedo student_t_impl_albedo_of(
     float lowest = (_e3.floor * (_e3.slope * _e13)) / (_e3.floor + (_e3.slope * _e13));
     float _e25 = student_t_impl_log_growth(_e13 / _e3.offset);
     float coordinate = (_e25 + (_e3.slow * metal::log(_e13 / _e3.first))) + (_e3.linear * _e13);
-    if (sigma_15.x > 0.0) {
-        local_6 = sigma_15.y > 0.0;
+    if (!((_e3.values == shape_16))) {
+        if (sigma_15.x > 0.0) {
+            local_7 = sigma_15.y > 0.0;
+        } else {
+            local_7 = false;
+        }
+        bool _e49 = local_7;
+        local_6 = !(_e49);
     } else {
-        local_6 = false;
+        local_6 = true;
     }
-    bool _e44 = local_6;
-    bool mirror = !(_e44);
+    bool mirror = local_6;
     return StudentTImplAlbedo {_e3, mirror ? 0.0 : _e13, (coordinate - _e3.start) / _e3.range, lowest};
 }
 
@@ -977,13 +983,13 @@ inline float student_t_compensation(
     uint masking_9,
     device const metal::float2* student_t_tables
 ) {
-    bool local_7 = {};
+    bool local_8 = {};
     if (v_9.z > 0.0) {
-        local_7 = l_2.z > 0.0;
+        local_8 = l_2.z > 0.0;
     } else {
-        local_7 = false;
+        local_8 = false;
     }
-    bool _e14 = local_7;
+    bool _e14 = local_8;
     if (!(_e14)) {
         return 0.0;
     }
