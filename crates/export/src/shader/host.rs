@@ -77,8 +77,8 @@ impl Host {
                     .into(),
             ),
             (Language::Slang, _) if is_bound => Err(
-                "Slang gives parameters of modules their bindings itself, which a program asks \
-                     for by reflection"
+                "Slang places the tables itself: write [[vk::binding(3, 1)]] before the line that \
+                     declares them, and : register(t3, space1) at its end"
                     .into(),
             ),
             (_, Some(Group::Replaced(text))) => {
