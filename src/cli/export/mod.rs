@@ -56,7 +56,7 @@ enum TargetArg {
     /// Functions in the Metal Shading Language.
     #[command(aliases = ["MSL", "metal"])]
     Msl(shape::ShaderArgs),
-    /// A differentiable module of Slang: also CUDA and C++.
+    /// Functions in Slang, with derivatives: all of these, CUDA and C++.
     #[command(aliases = ["SLANG"])]
     Slang(shape::ShaderArgs),
     /// A program for Vulkan that samples visible normals.

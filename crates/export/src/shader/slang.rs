@@ -1,4 +1,4 @@
-//! Slang: the translation into HLSL, of which Slang is a superset, as a module with derivatives.
+//! Slang: the translation into HLSL, which its compilers take as it is, with derivatives.
 //!
 //! Derivatives are lost without a word in a structure that is not of `IDifferentiable`, and in a
 //! function without its attribute that returns one. So all structures are, and all functions of
@@ -14,35 +14,34 @@ pub(super) fn module(storage: Storage) -> String {
 }
 
 fn from_hlsl(hlsl: &str) -> String {
-    let code = hlsl.lines().filter(|line| !line.starts_with('#')).map(of_line).collect::<String>();
-    format!("module student_t;\n\n{}\n\n{}", code.trim(), include_str!("additions.slang"))
+    let mut is_differentiable = false;
+    let code = hlsl.lines().filter(|line| !line.starts_with('#'));
+    let code: String = code.map(|line| of_line(line, &mut is_differentiable)).collect();
+    format!("{}\n\n{}", code.trim(), include_str!("additions.slang"))
 }
 
-/// A line of HLSL; attributes stand on the line before.
-fn of_line(line: &str) -> String {
-    let first = line.split(' ').next().unwrap_or_default();
-    let is_function = !first.is_empty() && line.contains('(') && !line.ends_with(';');
-    let of_numbers = first.starts_with("float") || first.starts_with("StudentT");
+/// A line of HLSL; attributes stand on the line before. `is_differentiable` is of the function that
+/// it is in.
+fn of_line(line: &str, is_differentiable: &mut bool) -> String {
     let line = line.replace(" : register(STUDENT_T_REGISTER)", "");
-    let line = match line.strip_prefix("struct ").and_then(|rest| rest.strip_suffix(" {")) {
-        Some(name) => format!("struct {name} : IDifferentiable {{"),
-        None => line,
-    };
-    let line = CALLS.iter().fold(line, |line, [from, to]| with_call(&line, from, to));
-    let is_public = line.starts_with("static const")
-        || is_function && line.contains(" student_t_") && !line.contains(" student_t_impl_");
-    let attribute = if is_function && of_numbers { "[Differentiable]\n" } else { "" };
-    format!("{attribute}{}{line}\n", if is_public { "public " } else { "" })
+    let line = with_call(&line, "sqrt", "student_t_impl_sqrt");
+    if let Some(name) = line.strip_prefix("struct ").and_then(|rest| rest.strip_suffix(" {")) {
+        return format!("struct {name} : IDifferentiable {{\n");
+    }
+    let is_function = line.starts_with(char::is_alphabetic) && line.contains('(');
+    if is_function && !line.ends_with(';') {
+        *is_differentiable = line.starts_with("float") || line.starts_with("StudentT");
+        let attribute = if *is_differentiable { "[Differentiable]\n" } else { "" };
+        return format!("{attribute}{line}\n");
+    }
+    let constants = if *is_differentiable { &CONSTANTS[..] } else { &[] };
+    let constant = |line: String, call: &&str| with_call(&line, call, &format!("no_diff {call}"));
+    constants.iter().fold(line, constant) + "\n"
 }
 
-/// What is called otherwise: what tables hold, and which cell a number is in, are constants; and
-/// the root has another derivative (`additions.slang`).
-const CALLS: [[&str; 2]; 4] = [
-    ["asfloat", "no_diff asfloat"],
-    ["student_t_tables.Load", "no_diff student_t_tables.Load"],
-    ["floor", "no_diff floor"],
-    ["sqrt", "student_t_impl_sqrt"],
-];
+/// Calls that return what does not change with a number: what tables hold, and the cell that a
+/// number is in.
+const CONSTANTS: [&str; 3] = ["asfloat", "student_t_tables.Load", "floor"];
 
 /// The line with calls of a function by another name.
 fn with_call(line: &str, from: &str, to: &str) -> String {
@@ -78,8 +77,7 @@ mod tests {
             for pair in lines.windows(2) {
                 let [before, line] = pair else { unreachable!() };
                 assert!(!line.starts_with("struct ") || line.contains(" : IDifferentiable {"));
-                let declares = line.trim_start_matches("public ");
-                if declares.starts_with("float") || declares.starts_with("StudentT") {
+                if line.starts_with("float") || line.starts_with("StudentT") {
                     assert_eq!(*before, "[Differentiable]", "{line}");
                     functions += 1;
                 }
@@ -92,16 +90,6 @@ mod tests {
             assert_eq!(count("sqrt("), count("student_t_impl_sqrt("));
             assert!(!text.contains('#') && !text.contains("register("));
         }
-    }
-
-    #[test]
-    fn what_users_call_is_public() {
-        let text = module(Storage::Buffer);
-        let public = text.lines().filter(|line| line.starts_with("public "));
-        let (constants, functions): (Vec<&str>, Vec<&str>) =
-            public.partition(|line| line.contains(" static const "));
-        assert_eq!((constants.len(), functions.len()), (2, 15), "{functions:?}");
-        assert!(functions.iter().all(|line| !line.contains("_impl_")));
     }
 
     #[test]
