@@ -202,22 +202,25 @@ fn bad_requests_are_refused_with_a_remedy_and_write_nothing() {
     assert!(fs::read_to_string(at.join("out/student_t.h")).unwrap().contains("STUDENT_T_H"));
 }
 
-/// The functions of shader modules.
-const SHADER_FUNCTIONS: [&str; 14] = [
-    "student_t_d(",
-    "student_t_masking(",
-    "student_t_lambda(",
-    "student_t_masking_shadowing(",
-    "student_t_sample_visible_normal(",
-    "student_t_visible_normal_pdf(",
+/// Functions of lobes, in all shader modules.
+const SHADER_FUNCTIONS: [&str; 17] = [
+    "student_t_lobe_d(",
+    "student_t_lobe_masking(",
+    "student_t_lobe_lambda(",
+    "student_t_lobe_masking_shadowing(",
+    "student_t_lobe_eval_pdf(",
+    "student_t_lobe_sample_visible_normal(",
+    "student_t_lobe_visible_normal_pdf(",
     "student_t_reflect(",
-    "student_t_reflection_weight(",
-    "student_t_reflection_pdf(",
-    "student_t_albedo(",
-    "student_t_albedo_parts(",
-    "student_t_albedo_average(",
-    "student_t_albedo_average_parts(",
-    "student_t_compensation(",
+    "student_t_lobe_reflection_weight(",
+    "student_t_lobe_reflection_pdf(",
+    "student_t_effectively_smooth(",
+    "student_t_lobe_albedo(",
+    "student_t_lobe_albedo_parts(",
+    "student_t_lobe_albedo_average(",
+    "student_t_lobe_albedo_average_parts(",
+    "student_t_lobe_compensation(",
+    "student_t_compensation_from(",
 ];
 
 #[test]
@@ -234,21 +237,39 @@ fn every_language_has_all_functions_a_sample_and_data() {
     ];
     for (language, module, sample, has_buffers) in cases {
         let mut data: Vec<Vec<u8>> = Vec::new();
-        for textures in [false, true] {
-            let out = format!("{language}-{textures}");
-            let mut export = vec!["export", language, "--gamma", "3,1.65", "--out", &out];
+        let kinds =
+            [("student_t", ["--gamma", "3,1.65"].as_slice()), ("student_t_family", &["--family"])];
+        for ((name, what), textures) in
+            kinds.into_iter().flat_map(|kind| [(kind, false), (kind, true)])
+        {
+            let out = format!("{name}-{language}-{textures}");
+            let mut export = [&["export", language, "--out", &out], what].concat();
             export.extend(textures.then_some("--textures"));
             ok(at, &export);
-            let mut files = [module, sample, "student_t.bin", "student_t.exr", "student_t.json"];
+            let [module, sample] = [module, sample].map(|file| file.replace("student_t", name));
+            let ends = ["bin", "exr", "json"].map(|end| format!("{name}.{end}"));
+            let mut files = [&[module.clone(), sample.clone()], &ends[..]].concat();
+            files.retain(|file| file != "student_t_family.exr");
             files.sort();
             assert_eq!(names(&at.join(&out)), files);
             let text = |name: &str| fs::read_to_string(at.join(&out).join(name)).unwrap();
-            let (module, sample) = (text(module), text(sample));
+            let (module, sample) = (text(&module), text(&sample));
             assert!(module.is_ascii() && sample.is_ascii(), "{out}");
             assert!(module.starts_with("// SPDX-License-Identifier: CC0-1.0"), "{out}");
-            for function in SHADER_FUNCTIONS {
+            let [other, maker] = match name {
+                "student_t" => ["student_t_lobe_at(", "student_t_lobe_of("],
+                _ => ["student_t_lobe_of(", "student_t_lobe_at("],
+            };
+            for function in SHADER_FUNCTIONS.iter().chain([&maker]) {
                 // Once in the list at the top, and once defined.
                 assert!(module.matches(function).count() >= 2, "{out}: {function}");
+            }
+            assert!(!module.contains(other) && sample.contains(maker), "{out}");
+            // The calls by shape that came first.
+            for function in SHADER_FUNCTIONS.iter().filter(|name| name.contains("_lobe_")) {
+                let by_shape = format!(" {}", function.replace("_lobe", ""));
+                let is_there = name == "student_t" && !function.contains("eval_pdf");
+                assert_eq!(module.contains(&by_shape), is_there, "{out}: {by_shape}");
             }
             // The code has no names of the translator and no entry point.
             let code: String = module.lines().filter(|line| !line.starts_with("//")).collect();
@@ -259,10 +280,10 @@ fn every_language_has_all_functions_a_sample_and_data() {
             let words = ["texture", "Texture2D", "sampler2D"];
             let uses_texture = words.iter().any(|word| code.contains(word));
             assert_eq!(uses_texture, textures || !has_buffers, "{out}");
-            data.push(fs::read(at.join(&out).join("student_t.bin")).unwrap());
+            data.push(fs::read(at.join(&out).join(format!("{name}.bin"))).unwrap());
         }
         // Buffers and textures have the same bytes.
-        assert_eq!(data[0], data[1], "{language}");
+        assert!(data[0] == data[1] && data[2] == data[3], "{language}");
     }
 
     ok(at, &["export", "spirv", "--gamma", "3", "--out", "spirv"]);
@@ -414,6 +435,14 @@ fn every_shape_is_one_header_or_one_file() {
     for arguments in [["--family", "--gamma", "3"], ["--gamma", "3", "--binary"]] {
         refused(at, &[&["export", "c", "--out", "out"][..], &arguments].concat());
     }
+    // Shaders read the same file, filled up to whole rows.
+    ok(at, &["export", "wgsl", "--family", "--out", "shader"]);
+    let filled = fs::read(at.join("shader/student_t_family.bin")).unwrap();
+    assert!(filled.starts_with(&bytes) && filled[bytes.len()..].iter().all(|byte| *byte == 0));
+    let description = json(&at.join("shader/student_t_family.json"));
+    let number = |name: &str| description[name].as_u64().unwrap() as usize;
+    assert_eq!(filled.len(), 4 * number("width") * number("height"));
+    assert_eq!(number("layout"), word(1) as usize);
     // One shape without its albedos.
     ok(at, &["export", "c", "--gamma", "3", "--no-albedo", "--out", "one"]);
     let one = fs::read_to_string(at.join("one/student_t_gamma_3.h")).unwrap();

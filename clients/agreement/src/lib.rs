@@ -2,6 +2,7 @@
 //! with the rows of `docs/reference.csv`. Clients run the functions.
 
 mod compare;
+mod family;
 mod lookup;
 mod points;
 mod reference;
@@ -9,6 +10,7 @@ mod reference;
 use microfacet_sampler::Tables;
 
 pub use compare::{Limits, Rough};
+pub use family::{At, FamilyLimits, ForeignFamily, Hit, agree as agree_with_family};
 pub use lookup::{Answer, Point};
 
 use compare::Worst;

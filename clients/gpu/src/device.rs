@@ -55,7 +55,7 @@ impl Gpu {
     /// Tables as a texture.
     pub fn texture(&self, tables: &Tables) -> Bound {
         let size = [tables.width, tables.height, 0];
-        Bound::Texture(self.view(size, wgpu::TextureFormat::Rg32Float, &tables.bytes))
+        Bound::Texture(self.view(size, tables.format, &tables.bytes))
     }
 
     /// Whether it filters textures of 32-bit floats.

@@ -15,26 +15,32 @@ pub struct Export {
     description: Value,
 }
 
-/// Pairs of numbers in rows.
+/// Texels in rows.
 pub struct Tables {
     pub bytes: Vec<u8>,
     pub width: u32,
     pub height: u32,
+    pub format: wgpu::TextureFormat,
 }
 
 impl Export {
-    pub fn read(folder: &Path) -> Self {
-        let file = |name: &str| folder.join(name);
-        let text = |name| fs::read_to_string(file(name)).expect(name);
-        let description: Value =
-            serde_json::from_str(&text("student_t.json")).expect("a description");
+    /// Reads the files of an export, whose names begin with `student_t` or `student_t_family`.
+    pub fn read(folder: &Path, name: &str) -> Self {
+        let file = |end: &str| folder.join(format!("{name}{end}"));
+        let text = |end: &str| fs::read_to_string(file(end)).expect(end);
+        let description: Value = serde_json::from_str(&text(".json")).expect("a description");
         let number = |name: &str| description[name].as_u64().expect(name) as u32;
         let tables = Tables {
-            bytes: fs::read(file("student_t.bin")).expect("tables"),
+            bytes: fs::read(file(".bin")).expect("tables"),
             width: number("width"),
             height: number("height"),
+            format: match description["format"].as_str() {
+                Some("rg32f") => wgpu::TextureFormat::Rg32Float,
+                Some("r32uint") => wgpu::TextureFormat::R32Uint,
+                other => panic!("{other:?} is no format of exports"),
+            },
         };
-        let (module, sample) = (text("student_t.wgsl"), text("student_t_sample.wgsl"));
+        let (module, sample) = (text(".wgsl"), text("_sample.wgsl"));
         Self { module, sample, tables, description }
     }
 

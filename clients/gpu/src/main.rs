@@ -7,6 +7,7 @@
 
 mod device;
 mod export;
+mod family;
 mod lut;
 mod sample;
 mod sphere;
@@ -33,8 +34,8 @@ const LIMITS: Limits = Limits {
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [points, buffers, textures, luts, reference, picture] = &arguments[..] else {
-        eprintln!("usage: student-t-on-gpu POINTS BUFFERS TEXTURES LUTS REFERENCE.csv PICTURE.png");
+    let [points, folder, reference, picture] = &arguments[..] else {
+        eprintln!("usage: student-t-on-gpu POINTS FOLDER REFERENCE.csv PICTURE.png");
         return ExitCode::from(2);
     };
     let points = points.parse().expect("a number of points");
@@ -46,13 +47,17 @@ fn main() -> ExitCode {
         }
     };
     println!("on {}", gpu.name);
-    let [buffers, textures] = [buffers, textures].map(|folder| Export::read(Path::new(folder)));
+    let folder = Path::new(folder);
+    let read = |language: &str, name| Export::read(&folder.join(language), name);
+    let [buffers, textures] = ["wgsl", "wgsl-textures"].map(|language| read(language, "student_t"));
+    let families = ["wgsl-family", "wgsl-family-textures"].map(|of| read(of, "student_t_family"));
     let gammas = buffers.gammas();
     let mut lookups = Lookups::new(&gpu, &buffers, &textures);
     let mut good = agree(&mut lookups, &LIMITS, &gammas, points, reference);
+    good &= family::agrees(&gpu, &families, points / 4);
     good &= sample::runs(&gpu, &buffers);
     good &= lut::lines_are_valid();
-    good &= lut::agree(&gpu, Path::new(luts));
+    good &= lut::agree(&gpu, &folder.join("lut"));
     good &= sphere::agrees(&gpu, &buffers, Path::new(picture));
     println!("{}", if good { "Shaders agree with the crate." } else { "They differ." });
     ExitCode::from(u8::from(!good))

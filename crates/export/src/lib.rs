@@ -31,7 +31,7 @@ pub mod texture;
 pub use albedo::AlbedoTable;
 pub use family::Family;
 pub use members::Part;
-pub use shader::{Group, Host, Language, Storage, texture_rows};
+pub use shader::{Group, Host, Kind, Language, Storage, texture_rows};
 pub use shader::{WIDTH, append_some, for_webgl, wgsl_crc32};
 pub use shape::Shape;
 
@@ -91,6 +91,18 @@ pub fn files(target: &Target, shapes: &[Shape]) -> Vec<ExportFile> {
 #[must_use]
 pub fn family_file(family: &Family, binary: bool) -> ExportFile {
     c::family(family, binary)
+}
+
+/// The files of every shape at once for a shading language, which must have what the host asks for
+/// ([`Host::check`]): the module, a program that uses it, the tables, and their description.
+#[must_use]
+pub fn family_shader_files(
+    language: Language,
+    storage: Storage,
+    host: &Host,
+    family: &Family,
+) -> Vec<ExportFile> {
+    shader::family_files(language, storage, host, family)
 }
 
 /// The header of dielectrics of one index for C; the functions and lobes are among the [`files`] of

@@ -5,15 +5,15 @@ use std::path::PathBuf;
 use microfacet_baker::store::OutputFolder;
 use microfacet_core::Masking;
 use microfacet_export::{
-    ExportFile, Family, Group, Host, Language, Shape, Storage, Target, family_file, files,
-    interface_file, texture_rows,
+    ExportFile, Family, Group, Host, Language, Shape, Storage, Target, family_file,
+    family_shader_files, files, interface_file, texture_rows,
 };
 use microfacet_sampler::Tables;
 use microfacet_sampler::port::interface_tables;
 use microfacet_tables::SIGMA_MAX;
 
 use crate::cli::words::distinct;
-use crate::cli::{Result, anyhow, note, tables, values};
+use crate::cli::{Result, anyhow, ensure, note, tables, values};
 
 /// Where tables come from and files go to.
 #[derive(clap::Args)]
@@ -64,8 +64,11 @@ pub(super) struct CArgs {
 pub(super) struct ShaderArgs {
     /// Shape in [1.501, inf]; 2 is GGX, inf is Beckmann. Several are separated by commas, or in
     /// options of their own.
-    #[arg(long, value_name = "G", required = true, value_delimiter = ',', value_parser = values::gamma)]
+    #[arg(long, value_name = "G", required_unless_present = "family", value_delimiter = ',', value_parser = values::gamma)]
     gamma: Vec<f64>,
+    /// All shapes, with gamma as an argument, as student_t_family.bin, which C reads as well.
+    #[arg(long, conflicts_with = "gamma")]
+    family: bool,
     #[command(flatten)]
     ends: Ends,
     /// Have a shader read its tables from a texture, not from a buffer. GLSL ES has no other way.
@@ -107,7 +110,16 @@ pub(super) fn shader(language: Language, args: &ShaderArgs) -> Result<()> {
     let (group, import_path) = (args.group.clone(), args.import_path.clone());
     let host = Host { group, binding: args.binding, import_path };
     host.check(language).map_err(|why| anyhow!(why))?;
-    let mut shapes = bind(&tables(args.ends.tables.as_deref())?, &args.gamma)?;
+    ensure!(
+        !(args.family && language == Language::Slang),
+        "Slang has single shapes only: name them with --gamma instead of --family"
+    );
+    let set = tables(args.ends.tables.as_deref())?;
+    if args.family {
+        let family = Family::bind(&set, !args.no_albedo)?;
+        return write(&args.ends, &family_shader_files(language, storage, &host, &family));
+    }
+    let mut shapes = bind(&set, &args.gamma)?;
     if args.no_albedo {
         shapes.iter_mut().for_each(Shape::leave_out_albedos);
     }

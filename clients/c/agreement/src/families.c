@@ -10,8 +10,7 @@ typedef struct hit {
 typedef struct at {
     float gamma, d, g1, lambda, pdf, reflection_pdf, normal[3];
     float g2[2], weight[2], f[2], f_pdf[2], albedo[2], average[2], parts[2][3], average_parts[2][3];
-    float compensation[2];
-    int is_smooth;
+    float compensation[2], is_smooth;
 } at;
 
 EXPORT void NAME(family)(const void *bytes, unsigned size, size_t count, const hit *hits, at *all);
@@ -34,7 +33,7 @@ EXPORT void NAME(family)(const void *bytes, unsigned size, size_t count, const h
         a->lambda = student_t_lobe_lambda(&lobe, h->v);
         a->pdf = student_t_lobe_visible_normal_pdf(&lobe, h->v, h->m);
         a->reflection_pdf = student_t_lobe_reflection_pdf(&lobe, h->v, h->m);
-        a->is_smooth = student_t_effectively_smooth(&lobe);
+        a->is_smooth = student_t_effectively_smooth(&lobe) ? 1.0f : 0.0f;
         student_t_lobe_sample_visible_normal(&lobe, h->v, h->u, a->normal);
         for (int k = 0; k < 2; ++k) {
             const enum student_t_masking masking = (enum student_t_masking)k;

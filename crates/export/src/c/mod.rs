@@ -46,7 +46,7 @@ const FRONT: &str = include_str!("student_t.hpp");
 const FRONT_NAME: &str = "student_t.hpp";
 
 /// `STUDENT_T_LAYOUT` of the header.
-const LAYOUT: u32 = 3;
+pub(super) const LAYOUT: u32 = 3;
 
 pub(super) fn files(shapes: &[Shape]) -> Vec<ExportFile> {
     let mut files = functions();

@@ -112,7 +112,7 @@ impl Block {
             starts: cell.starts,
             weights: cell.weights.map(|table| table.map(|power| power.map(short))),
         }));
-        let slots = offsets.codes(self.codes.len());
+        let slots = self.begin(offsets);
         self.codes.extend(&windows.slots);
 
         // Columns of slopes: by half, by node. The table ends with a row and a node to spare.
@@ -120,7 +120,7 @@ impl Block {
         let values = &part.slopes.values;
         let real = values.len() - (columns + 1) * shapes;
         // By some rows, since those of grazing views have other slopes than those of steep ones.
-        let slopes = offsets.codes(self.codes.len());
+        let slopes = self.begin(offsets);
         let mut starts = Vec::new();
         for group in values[..real].chunks(Self::ROWS * columns * shapes) {
             let column = |j: usize| {
@@ -217,11 +217,17 @@ impl Block {
         let mut at = [0; 6];
         for (i, (table, tolerance)) in all.zip(tolerances).enumerate() {
             let of = Codes::of(table.iter().copied(), tolerance);
-            at[i] = offsets.codes(self.codes.len());
+            at[i] = self.begin(offsets);
             self.codes.extend(table.iter().map(|&x| of.code(x)));
             codes[i] = [of.start, of.step];
         }
         Group(volume_of(Some(volume), codes, at))
+    }
+
+    /// The offset of codes that are added next: they begin with a word, since shaders read words.
+    fn begin(&mut self, offsets: &mut Offsets) -> u32 {
+        self.codes.resize(self.codes.len().next_multiple_of(2), 0);
+        offsets.codes(self.codes.len())
     }
 
     /// Adds numbers, and returns their offset.
@@ -252,12 +258,12 @@ impl Block {
         }
         codes.extend(std::iter::repeat_n(0, N * table.shapes));
         columns.extend(std::iter::repeat_n(0.0, 2 * N));
-        let found = self.codes.windows(codes.len().max(1)).position(|window| window == codes);
+        let found = self.codes.windows(codes.len().max(1)).step_by(2).position(|of| of == codes);
         let same = self.numbers.windows(columns.len()).position(|window| window == columns);
         if let (Some(codes), Some(columns)) = (found, same) {
-            return [offsets.codes(codes), (offsets.numbers_at + 4 * columns) as u32];
+            return [offsets.codes(2 * codes), (offsets.numbers_at + 4 * columns) as u32];
         }
-        let at = offsets.codes(self.codes.len());
+        let at = self.begin(offsets);
         self.codes.extend(codes);
         [at, self.numbers(offsets, columns)]
     }

@@ -6,10 +6,11 @@ use std::collections::BTreeMap;
 use microfacet_tables::crc32;
 use serde::Serialize;
 
+use super::super::family::Block;
 use super::super::members::{Member, PREFIXES, Part, Value};
 use super::super::numbers::as_typed;
-use super::super::{ExportFile, Shape, open_exr};
-use super::NAME;
+use super::super::{ExportFile, Family, Shape, c, open_exr};
+use super::Kind;
 
 /// Raised whenever the order of members or tables changes.
 pub(super) const LAYOUT: u32 = 2;
@@ -83,17 +84,17 @@ pub(super) fn append_files(shapes: &[Shape], files: &mut Vec<ExportFile>) {
     let first = shapes.first().expect("shapes");
     let bytes: Vec<u8> = pairs.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
     let planes = [0, 1].map(|i| pairs.iter().map(|pair| pair[i]).collect());
-    let image = open_exr(NAME, [WIDTH, height], planes.into(), false, None);
-    let [file, name] = ["bin", "exr"].map(|end| format!("{NAME}.{end}"));
+    let name = Kind::Shapes.name();
+    let image = open_exr(name, [WIDTH, height], planes.into(), false, None);
+    let [file, image_file] = ["bin", "exr"].map(|end| format!("{name}.{end}"));
     files.push(ExportFile::new(&*file, bytes));
-    files.push(ExportFile::new(&*name, image.expect("finite numbers")));
-    let checksum = |file: &ExportFile| (file.name.clone(), crc32(&file.contents));
+    files.push(ExportFile::new(&*image_file, image.expect("finite numbers")));
     let description = Description {
         layout: LAYOUT,
         generator: &first.generator,
         numerics: first.numerics,
         file,
-        image: name,
+        image: image_file,
         format: "rg32f",
         byte_order: "little",
         width: WIDTH,
@@ -102,7 +103,51 @@ pub(super) fn append_files(shapes: &[Shape], files: &mut Vec<ExportFile>) {
         crc32: files.iter().map(checksum).collect(),
     };
     let json = serde_json::to_string_pretty(&description).expect("names and finite numbers");
-    files.push(ExportFile::new(format!("{NAME}.json"), json + "\n"));
+    files.push(ExportFile::new(format!("{name}.json"), json + "\n"));
+}
+
+/// The content of `student_t_family.json`.
+#[derive(Serialize)]
+struct FamilyDescription<'a> {
+    /// That of the block, which C reads as well.
+    layout: u32,
+    generator: &'a str,
+    numerics: u32,
+    file: String,
+    format: &'static str,
+    byte_order: &'static str,
+    width: usize,
+    height: usize,
+    crc32: BTreeMap<String, String>,
+}
+
+/// Adds the block of a family, filled up to whole rows of a texture, and its description.
+pub(super) fn append_family(family: &Family, files: &mut Vec<ExportFile>) {
+    let mut bytes = Block::new(family, c::LAYOUT).bytes();
+    let row = 4 * WIDTH;
+    let height = bytes.len().div_ceil(row);
+    bytes.resize(row * height, 0);
+    let name = Kind::Family.name();
+    let file = format!("{name}.bin");
+    files.push(ExportFile::new(&*file, bytes));
+    let description = FamilyDescription {
+        layout: c::LAYOUT,
+        generator: &family.generator,
+        numerics: family.numerics,
+        file,
+        format: "r32uint",
+        byte_order: "little",
+        width: WIDTH,
+        height,
+        crc32: files.iter().map(checksum).collect(),
+    };
+    let json = serde_json::to_string_pretty(&description).expect("names and numbers");
+    files.push(ExportFile::new(format!("{name}.json"), json + "\n"));
+}
+
+/// A file's name and the CRC-32 of its bytes.
+fn checksum(file: &ExportFile) -> (String, String) {
+    (file.name.clone(), crc32(&file.contents))
 }
 
 /// Rows of the texture of these shapes; WebGL 2 guarantees no more than 2048.

@@ -1,7 +1,7 @@
 //! Shading languages: what is particular to each.
 
 use super::data::LAYOUT;
-use super::for_webgl;
+use crate::c;
 
 /// A shading language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -31,6 +31,25 @@ pub enum Storage {
     Texture,
 }
 
+/// What the tables of a module are of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Kind {
+    /// Single shapes γ.
+    Shapes,
+    /// Every γ.
+    Family,
+}
+
+impl Kind {
+    /// Names of files before their extension.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Shapes => "student_t",
+            Self::Family => "student_t_family",
+        }
+    }
+}
+
 impl Language {
     /// `asked`, or a texture for a language without buffers.
     pub fn storage(self, asked: Storage) -> Storage {
@@ -53,23 +72,31 @@ impl Language {
 
     /// The module, of SPIR-V the program, as `clients/gpu` translates it; none of WGSL, which it
     /// is translated from, and of Slang, which is made of HLSL.
-    pub(super) fn translation(self, storage: Storage) -> Option<&'static [u8]> {
+    pub(super) fn translation(self, storage: Storage, kind: Kind) -> Option<&'static [u8]> {
+        macro_rules! of {
+            ($file:literal) => {
+                match kind {
+                    Kind::Shapes => include_bytes!(concat!("translated/", $file)),
+                    Kind::Family => include_bytes!(concat!("translated/family_", $file)),
+                }
+            };
+        }
         Some(match (self, storage) {
             (Self::Wgsl | Self::Slang, _) => return None,
-            (Self::Glsl, Storage::Buffer) => include_bytes!("translated/buffer.glsl"),
-            (Self::Glsl, Storage::Texture) => include_bytes!("translated/texture.glsl"),
-            (Self::GlslEs, _) => for_webgl().as_bytes(),
-            (Self::Hlsl, Storage::Buffer) => include_bytes!("translated/buffer.hlsl"),
-            (Self::Hlsl, Storage::Texture) => include_bytes!("translated/texture.hlsl"),
-            (Self::Msl, Storage::Buffer) => include_bytes!("translated/buffer.metal"),
-            (Self::Msl, Storage::Texture) => include_bytes!("translated/texture.metal"),
-            (Self::SpirV, Storage::Buffer) => include_bytes!("translated/buffer.spv"),
-            (Self::SpirV, Storage::Texture) => include_bytes!("translated/texture.spv"),
+            (Self::GlslEs, _) => of!("texture_es.glsl"),
+            (Self::Glsl, Storage::Buffer) => of!("buffer.glsl"),
+            (Self::Glsl, Storage::Texture) => of!("texture.glsl"),
+            (Self::Hlsl, Storage::Buffer) => of!("buffer.hlsl"),
+            (Self::Hlsl, Storage::Texture) => of!("texture.hlsl"),
+            (Self::Msl, Storage::Buffer) => of!("buffer.metal"),
+            (Self::Msl, Storage::Texture) => of!("texture.metal"),
+            (Self::SpirV, Storage::Buffer) => of!("buffer.spv"),
+            (Self::SpirV, Storage::Texture) => of!("texture.spv"),
         })
     }
 
     /// A program that uses the module.
-    pub(super) fn sample(self, storage: Storage) -> String {
+    pub(super) fn sample(self, storage: Storage, kind: Kind) -> String {
         let text = match self {
             Self::Wgsl | Self::SpirV => include_str!("samples/sample.wgsl"),
             Self::Glsl => include_str!("samples/sample.comp"),
@@ -78,16 +105,34 @@ impl Language {
             Self::Msl => include_str!("samples/sample.metal"),
             Self::Slang => include_str!("samples/sample.slang"),
         };
-        match (self, storage) {
-            (Self::Msl, Storage::Texture) => {
-                let buffer = "device const metal::float2* tables [[buffer(0)]]";
-                assert!(text.contains(buffer));
-                let texture =
-                    "metal::texture2d<float, metal::access::sample> tables [[texture(0)]]";
-                text.replace(buffer, texture)
-            }
-            _ => text.into(),
+        let mut text = text.to_owned();
+        let mut replace = |from: &str, to: &str| {
+            assert!(text.contains(from), "{from}");
+            text = text.replace(from, to);
+        };
+        if kind == Kind::Family {
+            replace("student_t.", "student_t_family.");
+            replace("student_t_lobe_of", "student_t_lobe_at");
+            let uint = match self {
+                Self::Wgsl | Self::SpirV => ["shape: u32,  ", "gamma: f32,  "],
+                _ => ["uint shape;", "float gamma;"],
+            };
+            replace(uint[0], uint[1]);
+            replace("its offset in student_t_family.json", "its shape");
+            let of_query =
+                if self == Self::GlslEs { ["(shape,", "(gamma,"] } else { ["q.shape", "q.gamma"] };
+            replace(of_query[0], of_query[1]);
         }
+        if (self, storage) == (Self::Msl, Storage::Texture) {
+            let number = if kind == Kind::Family { "uint" } else { "float" };
+            replace(
+                "device const metal::float2* tables [[buffer(0)]]",
+                &format!("metal::texture2d<{number}, metal::access::sample> tables [[texture(0)]]"),
+            );
+        } else if (self, kind) == (Self::Msl, Kind::Family) {
+            replace("device const metal::float2* tables", "device const uint* tables");
+        }
+        text
     }
 
     fn name(self) -> &'static str {
@@ -104,30 +149,108 @@ impl Language {
 }
 
 /// The comment at the head of the module.
-pub(super) fn head(file: &str, language: Language, storage: Storage) -> String {
+pub(super) fn head(file: &str, language: Language, storage: Storage, kind: Kind) -> String {
+    let layout = match kind {
+        Kind::Shapes => LAYOUT,
+        Kind::Family => c::LAYOUT,
+    };
     include_str!("head.txt")
+        .replace("{load}", kind.load())
+        .replace("{domain}", kind.domain())
+        .replace("{cost}", kind.cost())
+        .replace("{accuracy}", kind.accuracy())
         .replace("{file}", file)
         .replace("{language}", language.name())
-        .replace("{binding}", &binding(language, storage))
+        .replace("{binding}", &binding(language, storage, kind))
         .replace("{version}", env!("CARGO_PKG_VERSION"))
-        .replace("{layout}", &LAYOUT.to_string())
+        .replace("{layout}", &layout.to_string())
+}
+
+impl Kind {
+    /// How a lobe is made.
+    fn load(self) -> &'static str {
+        match self {
+            Self::Shapes => {
+                "\
+// A lobe is a shape and a roughness. Make it once at a hit, from the tables, and hand it on:
+//
+//     student_t_lobe_of(shape: u32, sigma: vec2f) -> StudentTLobe
+//
+// The functions below that begin with student_t_lobe_, but for student_t_lobe_eval_pdf, are also
+// there without lobe_ in their names, as student_t_d(shape, sigma, m), and make a lobe in each
+// call."
+            }
+            Self::Family => {
+                "\
+// A lobe is a shape gamma and a roughness. Make it once at a hit, from the tables, and hand it on:
+//
+//     student_t_lobe_at(gamma: f32, sigma: vec2f) -> StudentTLobe"
+            }
+        }
+    }
+
+    /// The first lines on the domain.
+    fn domain(self) -> &'static str {
+        match self {
+            Self::Shapes => {
+                "\
+// Domain. With a shape that is in the tables nothing reads outside them, and with directions of
+// length 1, or null, no result is NaN or infinite. Shaders may take NaN for anything, so that no
+// more is said of arguments that are NaN.
+//   shape     The place of its first pair in the tables, \"offset\" in student_t.json."
+            }
+            Self::Family => {
+                "\
+// Domain. Nothing reads outside the tables, and with directions of length 1, or null, no result is
+// NaN or infinite. Shaders may take NaN and infinity for anything, so that no more is said of
+// arguments that are NaN.
+//   gamma     Taken at the nearer end of [1.501, 1e18], as which infinity counts: 2 is GGX, from
+//             tables as well, and 1e18 Beckmann."
+            }
+        }
+    }
+
+    /// What an albedo takes.
+    fn cost(self) -> &'static str {
+        match self {
+            Self::Shapes => "Albedos take 36 nodes of a table:",
+            Self::Family => "Albedos take 36 codes of a table:",
+        }
+    }
+
+    /// Where errors are stated.
+    fn accuracy(self) -> &'static str {
+        match self {
+            Self::Shapes => {
+                "\
+// Accuracy. student_t.json has the errors of the tables, measured against the model in double
+// precision. What shaders add is in docs/shaders.md of microfacet-bake, which also has code that
+// binds the tables."
+            }
+            Self::Family => {
+                "\
+// Accuracy. docs/shaders.md of microfacet-bake has what was measured, and code that binds the
+// tables."
+            }
+        }
+    }
 }
 
 /// The comment on binding the tables.
-fn binding(language: Language, storage: Storage) -> String {
+fn binding(language: Language, storage: Storage, kind: Kind) -> String {
     let tables = match (storage, language) {
         (Storage::Buffer, _) => {
             "// Tables. Bind the bytes of student_t.bin, unchanged, as a storage buffer."
         }
         (Storage::Texture, Language::GlslEs) => {
             "// Tables. Make a texture with texStorage2D(gl.TEXTURE_2D, 1, gl.RG32F, width, height), fill it
-// with the bytes of student_t.bin, unchanged, set both of its filters to gl.NEAREST, and bind it to
-// the sampler student_t_tables. Width and height are in student_t.json."
+// with the bytes of student_t.bin, unchanged, set both of its filters to gl.NEAREST, and
+// bind it to the sampler student_t_tables. Width and height are in student_t.json."
         }
         (Storage::Texture, _) => {
             "// Tables. Make a texture of two channels in single precision (rg32float) and one level from the
-// bytes of student_t.bin, unchanged; its width and height are in student_t.json. It is read by
-// texel, never filtered."
+// bytes of student_t.bin, unchanged; its width and height are in student_t.json.
+// It is read by texel, never filtered."
         }
     };
     let place = match language {
@@ -138,8 +261,8 @@ fn binding(language: Language, storage: Storage) -> String {
         Language::Glsl => {
             "// To have them elsewhere, define the layout before this text, such as
 //     #define STUDENT_T_BINDING layout({std}set = 1, binding = 3)
-// Include this text after #version, as in student_t_sample.comp; OpenGL, which has no #include,
-// takes the text itself in its place."
+// Include this text after #version, as in student_t_sample.comp; OpenGL, which has no
+// #include, takes the text itself in its place."
         }
         Language::GlslEs => {
             "// Insert this text before your functions, and after
@@ -173,5 +296,16 @@ fn binding(language: Language, storage: Storage) -> String {
         Language::SpirV => "",
     };
     let std = if storage == Storage::Buffer { "std430, " } else { "" };
-    format!("{tables}\n{}", place.replace("{std}", std))
+    let text = format!("{tables}\n{}", place.replace("{std}", std));
+    match kind {
+        Kind::Shapes => text,
+        Kind::Family => text
+            .replace("student_t.", "student_t_family.")
+            .replace("student_t_sample", "student_t_family_sample")
+            .replace("gl.RG32F", "gl.R32UI")
+            .replace(
+                "two channels in single precision (rg32float)",
+                "one channel of 32 bits (r32uint)",
+            ),
+    }
 }

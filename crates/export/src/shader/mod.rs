@@ -1,4 +1,6 @@
 //! Shader modules: functions written once, in WGSL, and translated into files, which are here too.
+//! Functions of lobes are the same for single shapes and for a family; what reads the tables is
+//! that of one or of the other.
 
 mod data;
 mod host;
@@ -10,17 +12,14 @@ use std::fmt::Write;
 use microfacet_tables::crc32;
 
 use super::members::{Member, Value};
-use super::{ExportFile, Shape};
+use super::{ExportFile, Family, Shape};
 pub use data::texture_rows;
 pub use data::{WIDTH, append_some};
 pub use host::{Group, Host};
 use language::head;
-pub use language::{Language, Storage};
+pub use language::{Kind, Language, Storage};
 
-/// Names of files before their extension.
-const NAME: &str = "student_t";
-
-/// The functions, after the tables and the members of shapes.
+/// Functions of lobes, after what reads the tables.
 const FUNCTIONS: &str = concat!(
     include_str!("numbers.wgsl"),
     "\n",
@@ -28,8 +27,23 @@ const FUNCTIONS: &str = concat!(
     "\n",
     include_str!("normals.wgsl"),
     "\n",
+    include_str!("prefilter.wgsl"),
+    "\n",
     include_str!("albedo.wgsl"),
 );
+
+/// What reads the tables of shapes, after their members, and the functions by shape.
+const OF_SHAPES: &str = concat!(
+    include_str!("shape.wgsl"),
+    "\n",
+    include_str!("shape_albedo.wgsl"),
+    "\n",
+    include_str!("calls.wgsl"),
+);
+
+/// What reads the tables of a family.
+const OF_FAMILY: &str =
+    concat!(include_str!("family.wgsl"), "\n", include_str!("family_albedo.wgsl"));
 
 /// The module, a program that uses it, and the data.
 pub(super) fn files(
@@ -40,23 +54,49 @@ pub(super) fn files(
 ) -> Vec<ExportFile> {
     let storage = language.storage(storage);
     let module = module(&shapes.first().expect("shapes").lists(), storage);
-    let sample = language.sample(storage);
+    let mut files = text_files(Kind::Shapes, language, storage, host, &module);
+    data::append_files(shapes, &mut files);
+    files
+}
+
+/// The same of a family.
+pub(super) fn family_files(
+    language: Language,
+    storage: Storage,
+    host: &Host,
+    family: &Family,
+) -> Vec<ExportFile> {
+    let storage = language.storage(storage);
+    let mut files = text_files(Kind::Family, language, storage, host, &family_module(storage));
+    data::append_family(family, &mut files);
+    files
+}
+
+/// The module, and a program that uses it.
+fn text_files(
+    kind: Kind,
+    language: Language,
+    storage: Storage,
+    host: &Host,
+    module: &str,
+) -> Vec<ExportFile> {
+    let sample = language.sample(storage, kind);
     let [of_module, of_sample] = language.extensions();
-    let name = format!("{NAME}.{of_module}");
-    let text = if language == Language::Slang { slang::module(storage) } else { module };
-    let translation = language.translation(storage).unwrap_or(text.as_bytes());
+    let name = format!("{}.{of_module}", kind.name());
+    let slang = (language == Language::Slang).then(|| slang::module(storage));
+    let text = slang.as_deref().unwrap_or(module);
+    let translation = language.translation(storage, kind).unwrap_or(text.as_bytes());
     let contents = match language {
         Language::SpirV => host.place_words(translation),
         _ => {
             let text = str::from_utf8(translation).expect("text but of SPIR-V");
-            host.place(&format!("{}\n{text}", head(&name, language, storage)), language).into()
+            host.place(&format!("{}\n{text}", head(&name, language, storage, kind)), language)
+                .into()
         }
     };
     let sample = host.place_bindings(&sample, language);
-    let sample = ExportFile::new(format!("{NAME}_sample.{of_sample}"), sample);
-    let mut files = vec![ExportFile::new(name, contents), sample];
-    data::append_files(shapes, &mut files);
-    files
+    let sample = ExportFile::new(format!("{}_sample.{of_sample}", kind.name()), sample);
+    vec![ExportFile::new(name, contents), sample]
 }
 
 /// The functions for WebGL 2, without the comment at the head of the file.
@@ -69,14 +109,16 @@ pub fn for_webgl() -> &'static str {
 #[doc(hidden)]
 pub fn wgsl_crc32(shape: &Shape) -> String {
     let texts = [Storage::Buffer, Storage::Texture].map(|storage| {
-        format!("{}\n{}", module(&shape.lists(), storage), Language::SpirV.sample(storage))
+        let sample = |kind| Language::SpirV.sample(storage, kind);
+        let [shapes, family] = [Kind::Shapes, Kind::Family].map(sample);
+        [module(&shape.lists(), storage), shapes, family_module(storage), family].join("\n")
     });
     let lines = texts.iter().flat_map(|text| text.lines());
     let code: Vec<&str> = lines.filter(|line| !line.trim_start().starts_with("//")).collect();
     crc32(code.join("\n").as_bytes())
 }
 
-/// All text in WGSL, the same for all shapes, so that it can be translated before they are known.
+/// All text in WGSL of shapes, the same for all: it can be translated before they are known.
 fn module([lobe, uncorrelated, correlated]: &[Vec<Member>; 3], storage: Storage) -> String {
     let tables = match storage {
         Storage::Buffer => include_str!("buffer.wgsl"),
@@ -85,21 +127,56 @@ fn module([lobe, uncorrelated, correlated]: &[Vec<Member>; 3], storage: Storage)
     let first = lobe.len().div_ceil(2);
     let second = first + uncorrelated.len().div_ceil(2);
     let which = format!("select({second}u, {first}u, masking == STUDENT_T_UNCORRELATED)");
-    let shape = loader("StudentTShape", lobe, "student_t_impl_shape(shape: u32)", "shape");
+    let lobe =
+        loader("StudentTLobe", &LOBE, lobe, "student_t_lobe_of(shape: u32, sigma: vec2f)", "shape");
     let albedo = loader(
         "StudentTAlbedoTable",
+        &[],
         correlated,
         "student_t_impl_albedo_table(shape: u32, masking: u32)",
         &format!("shape + {which}"),
     );
-    format!("{tables}\n{shape}\n{albedo}\n{FUNCTIONS}")
+    format!("{tables}\n{LOBE_COMMENT}{lobe}\n{albedo}\n{FUNCTIONS}\n{OF_SHAPES}")
 }
 
-/// A struct of members, and a function that reads it; a table is the index of its first pair.
-fn loader(name: &str, members: &[Member], signature: &str, at: &str) -> String {
+/// All text in WGSL of a family.
+fn family_module(storage: Storage) -> String {
+    let tables = match storage {
+        Storage::Buffer => include_str!("family_buffer.wgsl"),
+        Storage::Texture => include_str!("family_texture.wgsl"),
+    };
+    format!("{tables}\n{OF_FAMILY}\n{FUNCTIONS}")
+}
+
+/// What is said of a lobe.
+const LOBE_COMMENT: &str = "\
+// The lobe of one shape and roughness: what a shader makes at a hit, and hands to the functions. Of
+// its members sigma, in [1e-8, 1e6], and is_mirror, whether one was not above 0, are for users.
+";
+
+/// The first members of a lobe of a shape, and their values.
+const LOBE: [[&str; 2]; 3] = [
+    ["sigma: vec2f", "vec2f(student_t_impl_sigma(sigma.x), student_t_impl_sigma(sigma.y))"],
+    ["is_mirror: bool", "!(sigma.x > 0.0 && sigma.y > 0.0)"],
+    ["shape: u32", "shape"],
+];
+
+/// A struct of members, after those that are given with their values, and a function that reads
+/// it; a table is the index of its first pair.
+fn loader(
+    name: &str,
+    given: &[[&str; 2]],
+    members: &[Member],
+    signature: &str,
+    at: &str,
+) -> String {
     let mut fields = String::new();
     let mut pairs = String::new();
     let mut values = String::new();
+    for [field, value] in given {
+        writeln!(fields, "    {field},").expect("memory");
+        writeln!(values, "        {value},").expect("memory");
+    }
     for (i, pair) in members.chunks(2).enumerate() {
         let first = pair[0].name;
         writeln!(pairs, "    let {first} = student_t_impl_pair(at + {i}u);").expect("memory");
@@ -123,6 +200,7 @@ mod tests {
     use microfacet_core::schlick::{F82_AVERAGE, F82_SCALE, SCHLICK_AVERAGE};
     use microfacet_sampler::{StudentT, Tables};
 
+    use super::super::family::Block;
     use super::super::numbers::single;
     use super::*;
 
@@ -139,12 +217,26 @@ mod tests {
             ),
         ];
         for constant in constants {
-            assert!(FUNCTIONS.contains(&constant), "{constant}");
+            assert!([FUNCTIONS, OF_SHAPES].concat().contains(&constant), "{constant}");
+        }
+        let constants = [
+            ("PARTS", 5),
+            ("VOLUMES", Block::HEAD / 4 - 2 * 28),
+            ("PART", (Block::HEAD / 4 - 2 * 28 - 5) / 2),
+            ("VOLUME", 28),
+            ("BETWEEN", Block::WINDOW / 4),
+            ("ROWS", Block::ROWS),
+        ];
+        for (name, value) in constants {
+            let line = format!("const STUDENT_T_IMPL_{name} = {value}u;\n");
+            assert!(OF_FAMILY.contains(&line), "{line}");
         }
         let width = data::WIDTH;
         let (mask, shift) = (width - 1, width.ilog2());
         let texel = format!("at & {mask}u), i32(at >> {shift}u)");
-        assert!(width.is_power_of_two() && include_str!("texture.wgsl").contains(&texel));
+        for text in [include_str!("texture.wgsl"), include_str!("family_texture.wgsl")] {
+            assert!(width.is_power_of_two() && text.contains(&texel));
+        }
     }
 
     #[test]
@@ -158,7 +250,7 @@ mod tests {
     fn members_are_read_by_pairs_in_their_order() {
         let shape = Shape::bind(&Tables::embedded(), 1.7).unwrap();
         let [_, _, albedo] = shape.lists();
-        let text = loader("T", &albedo, "t(shape: u32)", "shape");
+        let text = loader("T", &[], &albedo, "t(shape: u32)", "shape");
         let fields = text.lines().take_while(|line| *line != "}").skip(1);
         let declared: Vec<&str> =
             fields.map(|line| line.trim().split_once(": ").unwrap().0).collect();
@@ -178,9 +270,12 @@ mod tests {
             let text = module(&lists, storage);
             assert!(text == module(&heavy, storage) && text == module(&closed, storage));
             for language in [Language::Wgsl, Language::GlslEs, Language::Msl, Language::Slang] {
-                let head = head("student_t.metal", language, storage);
-                for line in head.lines().chain(text.lines()) {
-                    assert!(line.len() <= 100, "{line}");
+                for (kind, text) in [(Kind::Shapes, &text), (Kind::Family, &family_module(storage))]
+                {
+                    let head = head("student_t_family.metal", language, storage, kind);
+                    for line in head.lines().chain(text.lines()) {
+                        assert!(line.len() <= 100, "{line}");
+                    }
                 }
             }
         }

@@ -50,39 +50,27 @@ struct StudentTImplHalfSlope {
 
 // What tables do not hold, for gamma < 1.8: (1 + s x^2)^(-1/2) = number^exponent, at least 2^-100;
 // what would make z subnormal is kept apart.
-fn student_t_impl_heavy_slope(shape: StudentTShape, number: f32) -> StudentTImplHalfSlope {
-    let power = max(student_t_impl_log(max(number, 1e-37)) * shape.heavy_exponent, -69.3);
+fn student_t_impl_heavy_slope(lobe: StudentTLobe, number: f32) -> StudentTImplHalfSlope {
+    let power = max(student_t_impl_log(max(number, 1e-37)) * lobe.heavy_exponent, -69.3);
     let zeta = exp(power);
     let large = max(zeta, 1e-15);
     let x = 0.5 * sqrt(max(-student_t_impl_exp_growth(2.0 * power), 0.0));
-    let z = large * shape.heavy_root_s;
+    let z = large * lobe.heavy_root_s;
     return StudentTImplHalfSlope(x, z, 1.0, zeta / large, x + z);
 }
 
 // By tables, from the number along the plane and the view among their rows.
 fn student_t_impl_table_slope(
-    shape: StudentTShape,
+    lobe: StudentTLobe,
     along: f32,
-    view: StudentTImplPlace,
+    at: f32,
     silhouette: f32,
 ) -> StudentTImplHalfSlope {
     let second = along > 0.5;
-    let place = student_t_impl_place(student_t_impl_end(along) * shape.along_scale,
-                                     shape.numbers - 1.0);
-    let numbers = u32(shape.numbers);
-    let low = shape.slopes + (2u * view.cell + u32(second)) * numbers + place.cell;
-    let high = low + 2u * numbers;
-    // Linear between the views, a cubic through values and slopes along the number.
-    var a = student_t_impl_pair(low);
-    var b = student_t_impl_pair(low + 1u);
-    a += view.position * (student_t_impl_pair(high) - a);
-    b += view.position * (student_t_impl_pair(high + 1u) - b);
-    let w = place.position;
-    let value_a = 1.0 + w * (w * (w * 2.0 - 3.0));
-    let slope_a = w * (1.0 + w * (w - 2.0));
-    let value_b = w * (w * (3.0 - w * 2.0));
-    let slope_b = w * (w * (w - 1.0));
-    let g = (a.x * value_a + b.x * value_b) + (a.y * slope_a + b.y * slope_b);
+    let view = student_t_impl_place(at, lobe.rows);
+    let number = student_t_impl_place(student_t_impl_end(along) * lobe.along_scale,
+                                      lobe.numbers - 1.0);
+    let g = student_t_impl_along_at(lobe, view, u32(second), number);
     let sign = select(1.0, -1.0, second);
     let clear = g - select(silhouette, 0.0, second);
     return StudentTImplHalfSlope(g - 1.0, g * (2.0 - g), sign, 1.0, clear);
@@ -92,57 +80,55 @@ fn student_t_impl_table_slope(
 // the plane of incidence and t : tz across it, in units of sqrt(z z + s x x). Tables hold the
 // distance g of a slope's half tangent from the end of its half, so that the slope is 2(1 - g) over
 // g(2 - g).
-fn student_t_impl_sample_tables(shape: StudentTShape, sigma: vec2f, v: vec3f, u: vec2f) -> vec3f {
+fn student_t_impl_sample_tables(lobe: StudentTLobe, v: vec3f, u: vec2f) -> vec3f {
     // The slope across. The scale is 2^(1/4) times the number of cells.
-    let across = student_t_impl_place(student_t_impl_end(u.y) * shape.across_scale,
-                                      0.8408964 * shape.across_scale + 0.5);
-    let far = student_t_impl_cubic(shape.across, across);
+    let across = student_t_impl_place(student_t_impl_end(u.y) * lobe.across_scale,
+                                      0.8408964 * lobe.across_scale + 0.5);
+    let far = student_t_impl_across_at(lobe, across);
     let t = select(far - 1.0, 1.0 - far, u.y > 0.5);
     let tz = far * (2.0 - far);
 
     // The view, among the rows of the table, and the g of its silhouette in the first half.
-    let d = student_t_impl_stretch(sigma, v);
+    let d = student_t_impl_stretch(lobe.sigma, v);
     let tall = sqrt(d.square + d.z * d.z);
     var rest = 1.0 - d.z / (d.rho + tall);
-    if shape.heavy_per_row > 0.0 {
+    if lobe.heavy_per_row > 0.0 {
         // Next to normal incidence the other form loses digits, which the narrow cells there need.
         let steep = tall + d.z;
         rest = d.rho * (steep + d.rho) / (steep * (d.rho + tall));
     }
     let silhouette = student_t_impl_unit(rest);
-    let at = max(max(shape.rows_first - shape.rows_first * silhouette,
-                     shape.rows_second_end - shape.rows_second * silhouette),
-                 shape.rows - shape.rows_third * silhouette);
+    let at = max(max(lobe.rows_first - lobe.rows_first * silhouette,
+                     lobe.rows_second_end - lobe.rows_second * silhouette),
+                 lobe.rows - lobe.rows_third * silhouette);
 
     // The first number chooses between the tables and what is in none, which comes last.
     var along = student_t_impl_unit(u.x);
     var is_heavy = false;
     var number = 1.0;
-    if shape.heavy_per_row > 0.0 {
-        let cells = shape.heavy_per_row;
-        let place = student_t_impl_place(at * cells, shape.rows * cells);
-        let share = student_t_impl_cubic(shape.heavy, place);
-        let rest = 1.0 - share;
-        is_heavy = along > rest;
+    if lobe.heavy_per_row > 0.0 {
+        let cells = lobe.heavy_per_row;
+        let place = student_t_impl_place(at * cells, lobe.rows * cells);
+        let shares = student_t_impl_share_at(lobe, place);
+        is_heavy = along > shares.y;
         if is_heavy {
-            number = min((1.0 - along) / share, 1.0);
+            number = min((1.0 - along) / shares.x, 1.0);
         }
-        along = along / rest;
+        along = along / shares.y;
     }
     var slope: StudentTImplHalfSlope;
     if is_heavy {
-        slope = student_t_impl_heavy_slope(shape, number);
+        slope = student_t_impl_heavy_slope(lobe, number);
     } else {
-        let view = student_t_impl_place(at, shape.rows);
-        slope = student_t_impl_table_slope(shape, along, view, silhouette);
+        slope = student_t_impl_table_slope(lobe, along, at, silhouette);
     }
 
     // The normal, turned to the azimuth of the view.
-    let norm = sqrt(slope.z * slope.z + (4.0 * shape.s) * (slope.x * slope.x));
+    let norm = sqrt(slope.z * slope.z + (4.0 * lobe.s) * (slope.x * slope.x));
     let ahead = slope.x * (slope.sign * tz);
     let aside = norm * t;
     let turned = vec2f(ahead * d.xy.x - aside * d.xy.y, ahead * d.xy.y + aside * d.xy.x);
-    let m = student_t_impl_raise(vec3f(sigma * turned, slope.z * (0.5 * (d.frame * tz))),
+    let m = student_t_impl_raise(vec3f(lobe.sigma * turned, slope.z * (0.5 * (d.frame * tz))),
                                  slope.shrink);
     // v.m is at least rho length/|m| times g tz less that of the silhouette, from which the
     // roundings of a shader, of terms of up to rho length (3 + 6 |t|)/|m|, cannot take it below 0.
@@ -155,21 +141,18 @@ fn student_t_impl_sample_tables(shape: StudentTShape, sigma: vec2f, v: vec3f, u:
 // A normal m visible from v, from two numbers. u.x chooses the slope along the azimuth of the view
 // and u.y that across, both rising (for gamma < 1.8 within either of two parts); for GGX they are
 // height and azimuth of a point of a spherical cap. m is of unit length and above the horizon.
-fn student_t_sample_visible_normal(shape: u32, sigma: vec2f, v: vec3f, u: vec2f) -> vec3f {
-    let lobe = student_t_impl_shape(shape);
-    let rough = vec2f(student_t_impl_sigma(sigma.x), student_t_impl_sigma(sigma.y));
+fn student_t_lobe_sample_visible_normal(lobe: StudentTLobe, v: vec3f, u: vec2f) -> vec3f {
     if lobe.is_ggx > 0.0 {
-        return student_t_impl_sample_cap(rough, v, u);
+        return student_t_impl_sample_cap(lobe.sigma, v, u);
     }
-    return student_t_impl_sample_tables(lobe, rough, v, u);
+    return student_t_impl_sample_tables(lobe, v, u);
 }
 
 // Density of visible normals, max(0, v.m) D(m) G1(v)/(v.n).
-fn student_t_visible_normal_pdf(shape: u32, sigma: vec2f, v: vec3f, m: vec3f) -> f32 {
-    let lobe = student_t_impl_shape(shape);
+fn student_t_lobe_visible_normal_pdf(lobe: StudentTLobe, v: vec3f, m: vec3f) -> f32 {
     let facing = student_t_impl_max(student_t_impl_dot(v, m), 0.0);
-    let density = facing * student_t_impl_d(lobe, sigma, m);
-    let d = student_t_impl_stretched(sigma, v);
+    let density = facing * student_t_lobe_d(lobe, m);
+    let d = student_t_impl_stretch(lobe.sigma, v);
     return student_t_impl_product(density, student_t_impl_inverse_area(lobe, d));
 }
 
@@ -180,12 +163,11 @@ fn student_t_reflect(v: vec3f, m: vec3f) -> vec3f {
 
 // Density of the light that v is reflected to by a visible normal m: that of m over 4 v.m, which is
 // D(m) G1(v)/(4 v.n).
-fn student_t_reflection_pdf(shape: u32, sigma: vec2f, v: vec3f, m: vec3f) -> f32 {
+fn student_t_lobe_reflection_pdf(lobe: StudentTLobe, v: vec3f, m: vec3f) -> f32 {
     if !(student_t_impl_dot(v, m) > 0.0) {
         return 0.0;
     }
-    let lobe = student_t_impl_shape(shape);
-    let density = 0.25 * student_t_impl_d(lobe, sigma, m);
-    let d = student_t_impl_stretched(sigma, v);
+    let density = 0.25 * student_t_lobe_d(lobe, m);
+    let d = student_t_impl_stretch(lobe.sigma, v);
     return student_t_impl_product(density, student_t_impl_inverse_area(lobe, d));
 }

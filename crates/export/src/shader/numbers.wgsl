@@ -77,10 +77,11 @@ fn student_t_impl_place(x: f32, last: f32) -> StudentTImplPlace {
     return StudentTImplPlace(cell, x - f32(cell));
 }
 
-// The cubic of a cell at a position, from the coefficients of a table.
-fn student_t_impl_cubic(table: u32, place: StudentTImplPlace) -> f32 {
-    let a = student_t_impl_pair(table + 2u * place.cell);
-    let b = student_t_impl_pair(table + 2u * place.cell + 1u);
-    let w = place.position;
-    return (a.x + w * a.y) + (w * w) * (b.x + w * b.y);
+// The cubic through value and slope at both ends of a cell.
+fn student_t_impl_hermite(a: vec2f, b: vec2f, w: f32) -> f32 {
+    let value_a = 1.0 + w * (w * (w * 2.0 - 3.0));
+    let slope_a = w * (1.0 + w * (w - 2.0));
+    let value_b = w * (w * (3.0 - w * 2.0));
+    let slope_b = w * (w * (w - 1.0));
+    return (a.x * value_a + b.x * value_b) + (a.y * slope_a + b.y * slope_b);
 }

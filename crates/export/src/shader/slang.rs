@@ -5,11 +5,11 @@
 //! numbers have it, whatever the translation holds. `clients/slang` takes both away from each
 //! structure, to see that it is missed.
 
-use super::{Language, Storage};
+use super::{Kind, Language, Storage};
 
 /// The functions in Slang.
 pub(super) fn module(storage: Storage) -> String {
-    let hlsl = Language::Hlsl.translation(storage).expect("HLSL is a translation");
+    let hlsl = Language::Hlsl.translation(storage, Kind::Shapes).expect("HLSL is a translation");
     from_hlsl(str::from_utf8(hlsl).expect("HLSL is text"))
 }
 

@@ -4,7 +4,7 @@
 //! cut off again. Names that a writer makes up are made those of this module, and what the user
 //! has to bind gets its name from here.
 
-use microfacet_export::{Language, Storage};
+use microfacet_export::{Kind, Language, Storage};
 use naga::back::{glsl, hlsl, msl, spv};
 use naga::proc::BoundsCheckPolicies;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
@@ -14,22 +14,30 @@ use naga::{Module, ShaderStage};
 const ENTRY: &str = "student_t_impl_entry";
 
 /// A module in WGSL in another language; in SPIR-V, with a program that uses it.
-pub fn translate(module: &[u8], program: &[u8], language: Language, storage: Storage) -> Vec<u8> {
+pub fn translate(
+    module: &[u8],
+    program: &[u8],
+    (language, storage, kind): (Language, Storage, Kind),
+) -> Vec<u8> {
     let [wgsl, program] = [module, program].map(|text| str::from_utf8(text).expect(OURS));
     match language {
         Language::SpirV => {
             let words = spirv(&format!("{wgsl}{program}"));
             words.into_iter().flat_map(u32::to_le_bytes).collect()
         }
-        _ => text(wgsl, language, storage).into(),
+        _ => text(wgsl, language, storage, kind).into(),
     }
 }
 
 /// A module of functions as text.
-fn text(wgsl: &str, language: Language, storage: Storage) -> String {
+fn text(wgsl: &str, language: Language, storage: Storage, kind: Kind) -> String {
     let stage =
         if language == Language::GlslEs { "fragment" } else { "compute @workgroup_size(1)" };
-    let entry = format!("@{stage} fn {ENTRY}() {{ _ = student_t_impl_pair(0u); }}\n");
+    let reader = match kind {
+        Kind::Shapes => "student_t_impl_pair",
+        Kind::Family => "student_t_impl_word",
+    };
+    let entry = format!("@{stage} fn {ENTRY}() {{ _ = {reader}(0u); }}\n");
     let (module, info) = parse(&format!("{wgsl}\n{entry}"));
     match language {
         Language::Glsl => {
@@ -37,10 +45,14 @@ fn text(wgsl: &str, language: Language, storage: Storage) -> String {
             let text = glsl(&module, &info, version, ShaderStage::Compute);
             let mut names = vec![("_group_0_binding_0_cs", "student_t_tables")];
             if storage == Storage::Buffer {
-                names.push(("type_1_block_0Compute", "student_t_tables_block"));
+                names.push((block(&text), "student_t_tables_block"));
             }
             let text = renamed(&text, &names);
-            guarded(&bindable_glsl(&without_lines(&text, &["#", "layout(local_size"]), storage))
+            guarded(&bindable_glsl(
+                &without_lines(&text, &["#", "layout(local_size"]),
+                storage,
+                kind,
+            ))
         }
         Language::GlslEs => {
             let version = glsl::Version::Embedded { version: 300, is_webgl: true };
@@ -49,7 +61,7 @@ fn text(wgsl: &str, language: Language, storage: Storage) -> String {
             without_lines(&text, &["#version", "precision "]).trim_start().into()
         }
         Language::Hlsl => guarded(&bindable_hlsl(&hlsl(&module, &info))),
-        Language::Msl => guarded(&includable_msl(&msl(&module, &info), storage)),
+        Language::Msl => guarded(&includable_msl(&msl(&module, &info), storage, kind)),
         Language::Wgsl | Language::Slang | Language::SpirV => panic!("no translation into text"),
     }
 }
@@ -103,10 +115,13 @@ fn msl(module: &Module, info: &ModuleInfo) -> String {
 }
 
 /// Lets users of GLSL say where the tables are.
-fn bindable_glsl(text: &str, storage: Storage) -> String {
+fn bindable_glsl(text: &str, storage: Storage, kind: Kind) -> String {
     let (declared, default) = match storage {
         Storage::Buffer => ("layout(std430) readonly buffer", "layout(std430, binding = 0)"),
-        Storage::Texture => ("uniform sampler2D", "layout(binding = 0)"),
+        Storage::Texture => match kind {
+            Kind::Shapes => ("uniform sampler2D", "layout(binding = 0)"),
+            Kind::Family => ("uniform usampler2D", "layout(binding = 0)"),
+        },
     };
     let rest = declared.trim_start_matches("layout(std430) ");
     let text = renamed(text, &[(declared, &format!("STUDENT_T_BINDING {rest}"))]);
@@ -126,8 +141,15 @@ fn with_default(name: &str, default: &str, text: &str) -> String {
 /// Metal's functions take the tables as an argument: a pointer, in place of a reference to an array
 /// of unknown length and of a structure with that length, which none reads. They are inline, since
 /// Metal links what several files define.
-fn includable_msl(text: &str, storage: Storage) -> String {
-    let text = without_lines(text, &["// language", "typedef metal::float2 type_1"]);
+fn includable_msl(text: &str, storage: Storage, kind: Kind) -> String {
+    let array = match kind {
+        Kind::Shapes => "metal::float2",
+        Kind::Family => "uint",
+    };
+    let name = text
+        .split_once(&format!("typedef {array} "))
+        .map(|(_, rest)| rest.split_once('[').expect("an array").0);
+    let text = without_lines(text, &["// language", &format!("typedef {array} ")]);
     let functions = text.lines().map(|line| {
         let begins = line.starts_with(char::is_alphabetic) && !line.starts_with("struct");
         let inline = if begins && line.contains(" student_t_") { "inline " } else { "" };
@@ -143,12 +165,19 @@ fn includable_msl(text: &str, storage: Storage) -> String {
                 (",\n    constant _mslBufferSizes& _buffer_sizes", ""),
                 (", _buffer_sizes", ""),
                 (
-                    "device type_1 const& student_t_tables",
-                    "device const metal::float2* student_t_tables",
+                    &format!("device {} const& student_t_tables", name.expect("an array")),
+                    &format!("device const {array}* student_t_tables"),
                 ),
             ],
         ),
     }
+}
+
+/// The name of the block of a buffer in GLSL.
+fn block(text: &str) -> &str {
+    let (before, _) = text.split_once("_block_0Compute").expect("a block");
+    let start = before.rfind(' ').expect("a word before") + 1;
+    &text[start..before.len() + "_block_0Compute".len()]
 }
 
 fn without_entry(text: &str, entry: &str) -> String {

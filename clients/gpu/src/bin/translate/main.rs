@@ -9,8 +9,11 @@ mod languages;
 use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::LazyLock;
 
-use microfacet_export::{Host, Language, Shape, Storage, Target, files, wgsl_crc32};
+use microfacet_export::{
+    Family, Host, Kind, Language, Shape, Storage, Target, family_shader_files, files, wgsl_crc32,
+};
 use microfacet_sampler::Tables;
 
 /// Where they are, in the repository.
@@ -23,7 +26,7 @@ const CHECKSUM: &str = "wgsl.crc32";
 const REMEDY: &str = "write all anew: cargo run --release --manifest-path clients/gpu/Cargo.toml \
     --bin translate -- --write";
 
-/// By name.
+/// By name; those of a family begin with `family_`.
 const FILES: [(&str, Language, Storage); 9] = [
     ("buffer.glsl", Language::Glsl, Storage::Buffer),
     ("texture.glsl", Language::Glsl, Storage::Texture),
@@ -56,33 +59,49 @@ fn main() -> ExitCode {
         eprintln!("error: {FOLDER}/{CHECKSUM} is not that of the WGSL");
         good = false;
     }
-    for (name, language, storage) in FILES {
-        let [module, sample] = exported(Language::Wgsl, storage);
-        let translation = languages::translate(&module, &sample, language, storage);
-        let path = folder.join(name);
+    let kinds = [(Kind::Shapes, ""), (Kind::Family, "family_")];
+    let all = kinds.iter().flat_map(|kind| FILES.iter().map(move |file| (kind, file)));
+    for (&(kind, prefix), &(name, language, storage)) in all {
+        let [module, sample] = exported(Language::Wgsl, storage, kind);
+        let translation = languages::translate(&module, &sample, (language, storage, kind));
+        let name = format!("{prefix}{name}");
+        let path = folder.join(&name);
         if writes {
-            fs::write(path, translation).expect(name);
-        } else if fs::read(path).expect(name) != translation {
+            fs::write(path, translation).expect(&name);
+        } else if fs::read(path).expect(&name) != translation {
             eprintln!("error: {FOLDER}/{name} is no translation of the WGSL beside it");
             good = false;
-        } else if !exported(language, storage)[0].ends_with(&translation) {
+        } else if !exported(language, storage, kind)[0].ends_with(&translation) {
             eprintln!("error: {language:?} by {storage:?} is exported without {FOLDER}/{name}");
             good = false;
         }
     }
+    let count = kinds.len() * FILES.len();
     match (writes, good) {
-        (true, _) => println!("{} files written", FILES.len()),
-        (false, true) => println!("{} translations are those of the WGSL", FILES.len()),
+        (true, _) => println!("{count} files written"),
+        (false, true) => println!("{count} translations are those of the WGSL"),
         (false, false) => eprintln!("{REMEDY}"),
     }
     ExitCode::from(u8::from(!good))
 }
 
 /// Module and program of an export. They are the same for all shapes.
-fn exported(language: Language, storage: Storage) -> [Vec<u8>; 2] {
-    let target = Target::Shader(language, storage, Host::default());
-    let mut files = files(&target, &[shape()]).into_iter();
+fn exported(language: Language, storage: Storage, kind: Kind) -> [Vec<u8>; 2] {
+    let host = Host::default();
+    let files = match kind {
+        Kind::Shapes => files(&Target::Shader(language, storage, host), &[shape()]),
+        Kind::Family => family_shader_files(language, storage, &host, family()),
+    };
+    let mut files = files.into_iter();
     [0; 2].map(|_| files.next().expect("a module and a program").contents)
+}
+
+/// A family, bound once.
+fn family() -> &'static Family {
+    static BOUND: LazyLock<Family> = LazyLock::new(|| {
+        Family::bind(&Tables::embedded(), true).expect("the family of the default set")
+    });
+    &BOUND
 }
 
 fn shape() -> Shape {

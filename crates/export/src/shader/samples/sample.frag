@@ -21,16 +21,17 @@ void main() {
     color = vec4(0.0, 0.0, 0.0, 1.0);
     if (l.z <= 0.0) return;
 
+    StudentTLobe lobe = student_t_lobe_of(shape, sigma);
     vec3 m = normalize(v + l);
     uint masking = STUDENT_T_HEIGHT_CORRELATED;
     float k = 1.0 - dot(v, m);
     vec3 fresnel = metal + (1.0 - metal) * (k * k * k * k * k);
-    vec3 f = fresnel * student_t_d(shape, sigma, m)
-        * student_t_masking_shadowing(shape, sigma, v, l, masking) / (4.0 * v.z * l.z);
+    vec3 f = fresnel * student_t_lobe_d(lobe, m)
+        * student_t_lobe_masking_shadowing(lobe, v, l, masking) / (4.0 * v.z * l.z);
     // What further bounces add.
     vec3 average = (20.0 * metal + 1.0) / 21.0;
-    float albedo = student_t_albedo_average(shape, sigma, masking);
+    float albedo = student_t_lobe_albedo_average(lobe, masking);
     f += average * average * albedo / (1.0 - average * (1.0 - albedo))
-        * student_t_compensation(shape, sigma, v, l, masking);
+        * student_t_lobe_compensation(lobe, v, l, masking);
     color.rgb = pow(f * l.z, vec3(1.0 / 2.2));
 }

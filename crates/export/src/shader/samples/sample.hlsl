@@ -30,15 +30,16 @@ void reflect_views(uint3 id : SV_DispatchThreadID) {
     queries.GetDimensions(count, stride);
     if (id.x >= count) return;
     Query q = queries[id.x];
+    const StudentTLobe lobe = student_t_lobe_of(q.shape, q.sigma);
     Answer a;
-    a.m = student_t_sample_visible_normal(q.shape, q.sigma, q.v, q.u);
+    a.m = student_t_lobe_sample_visible_normal(lobe, q.v, q.u);
     a.l = student_t_reflect(q.v, a.m);
     uint masking = STUDENT_T_HEIGHT_CORRELATED;
-    a.weight = student_t_reflection_weight(q.shape, q.sigma, q.v, a.l, masking);
-    a.pdf = student_t_reflection_pdf(q.shape, q.sigma, q.v, a.m);
-    a.f = student_t_compensation(q.shape, q.sigma, q.v, a.l, masking);
-    a.albedo = student_t_albedo(q.shape, q.sigma, q.v.z, masking);
-    a.average = student_t_albedo_average(q.shape, q.sigma, masking);
-    a.masking = student_t_masking(q.shape, q.sigma, q.v);
+    a.weight = student_t_lobe_reflection_weight(lobe, q.v, a.l, masking);
+    a.pdf = student_t_lobe_reflection_pdf(lobe, q.v, a.m);
+    a.f = student_t_lobe_compensation(lobe, q.v, a.l, masking);
+    a.albedo = student_t_lobe_albedo(lobe, q.v.z, masking);
+    a.average = student_t_lobe_albedo_average(lobe, masking);
+    a.masking = student_t_lobe_masking(lobe, q.v);
     answers[id.x] = a;
 }

@@ -29,18 +29,19 @@ kernel void reflect_views(
 ) {
     if (i >= count) return;
     const Query q = queries[i];
+    const StudentTLobe lobe = student_t_lobe_of(q.shape, q.sigma, tables);
     const metal::float3 v = metal::float3(q.v);
     const metal::float3 m =
-        student_t_sample_visible_normal(q.shape, q.sigma, v, q.u, tables);
+        student_t_lobe_sample_visible_normal(lobe, v, q.u, tables);
     const metal::float3 l = student_t_reflect(v, m);
     const uint masking = STUDENT_T_HEIGHT_CORRELATED;
     device Answer& a = answers[i];
     a.l = metal::packed_float3(l);
-    a.weight = student_t_reflection_weight(q.shape, q.sigma, v, l, masking, tables);
+    a.weight = student_t_lobe_reflection_weight(lobe, v, l, masking, tables);
     a.m = metal::packed_float3(m);
-    a.pdf = student_t_reflection_pdf(q.shape, q.sigma, v, m, tables);
-    a.f = student_t_compensation(q.shape, q.sigma, v, l, masking, tables);
-    a.albedo = student_t_albedo(q.shape, q.sigma, v.z, masking, tables);
-    a.average = student_t_albedo_average(q.shape, q.sigma, masking, tables);
-    a.masking = student_t_masking(q.shape, q.sigma, v, tables);
+    a.pdf = student_t_lobe_reflection_pdf(lobe, v, m, tables);
+    a.f = student_t_lobe_compensation(lobe, v, l, masking, tables);
+    a.albedo = student_t_lobe_albedo(lobe, v.z, masking, tables);
+    a.average = student_t_lobe_albedo_average(lobe, masking, tables);
+    a.masking = student_t_lobe_masking(lobe, v, tables);
 }

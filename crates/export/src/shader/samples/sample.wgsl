@@ -29,14 +29,15 @@ fn reflect_views(@builtin(global_invocation_id) id: vec3u) {
     }
     let q = queries[id.x];
     let masking = STUDENT_T_HEIGHT_CORRELATED;
+    let lobe = student_t_lobe_of(q.shape, q.sigma);
     var a: Answer;
-    a.m = student_t_sample_visible_normal(q.shape, q.sigma, q.v, q.u);
+    a.m = student_t_lobe_sample_visible_normal(lobe, q.v, q.u);
     a.l = student_t_reflect(q.v, a.m);
-    a.weight = student_t_reflection_weight(q.shape, q.sigma, q.v, a.l, masking);
-    a.pdf = student_t_reflection_pdf(q.shape, q.sigma, q.v, a.m);
-    a.f = student_t_compensation(q.shape, q.sigma, q.v, a.l, masking);
-    a.albedo = student_t_albedo(q.shape, q.sigma, q.v.z, masking);
-    a.average = student_t_albedo_average(q.shape, q.sigma, masking);
-    a.masking = student_t_masking(q.shape, q.sigma, q.v);
+    a.weight = student_t_lobe_reflection_weight(lobe, q.v, a.l, masking);
+    a.pdf = student_t_lobe_reflection_pdf(lobe, q.v, a.m);
+    a.f = student_t_lobe_compensation(lobe, q.v, a.l, masking);
+    a.albedo = student_t_lobe_albedo(lobe, q.v.z, masking);
+    a.average = student_t_lobe_albedo_average(lobe, masking);
+    a.masking = student_t_lobe_masking(lobe, q.v);
     answers[id.x] = a;
 }

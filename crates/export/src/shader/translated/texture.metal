@@ -6,7 +6,11 @@
 
 using metal::uint;
 
-struct StudentTShape {
+struct StudentTLobe {
+    metal::float2 sigma;
+    bool is_mirror;
+    char _pad2[3];
+    uint shape;
     float is_ggx;
     float s;
     float d_s;
@@ -70,17 +74,17 @@ struct StudentTImplHalfSlope {
     float shrink;
     float clear;
 };
-struct StudentTImplSix {
-    uint start;
-    char _pad1[12];
-    metal::float3 a;
-    metal::float3 b;
-};
 struct StudentTImplAlbedo {
     StudentTAlbedoTable table;
     float sigma;
     float coordinate;
     float lowest;
+};
+struct StudentTImplSix {
+    uint start;
+    char _pad1[12];
+    metal::float3 a;
+    metal::float3 b;
 };
 constant uint STUDENT_T_UNCORRELATED = 0u;
 constant uint STUDENT_T_HEIGHT_CORRELATED = 1u;
@@ -93,26 +97,58 @@ inline metal::float2 student_t_impl_pair(
     return _e10.xy;
 }
 
+inline float student_t_impl_min(
+    float a,
+    float b
+) {
+    return (a < b) ? a : b;
+}
+
+inline float student_t_impl_max(
+    float a_1,
+    float b_1
+) {
+    return (a_1 > b_1) ? a_1 : b_1;
+}
+
+inline float student_t_impl_sigma(
+    float sigma
+) {
+    float _e2 = student_t_impl_max(sigma, 0.00000001);
+    float _e4 = student_t_impl_min(_e2, 1000000.0);
+    return _e4;
+}
+
 inline uint student_t_impl_f2u32(float value) {
     return static_cast<uint>(metal::clamp(value, 0.0, 4294967000.0));
 }
 
-inline StudentTShape student_t_impl_shape(
+inline StudentTLobe student_t_lobe_of(
     uint shape,
+    metal::float2 sigma_1,
     metal::texture2d<float, metal::access::sample> student_t_tables
 ) {
-    metal::float2 _e3 = student_t_impl_pair(shape + 0u, student_t_tables);
-    metal::float2 _e6 = student_t_impl_pair(shape + 1u, student_t_tables);
-    metal::float2 _e9 = student_t_impl_pair(shape + 2u, student_t_tables);
-    metal::float2 _e12 = student_t_impl_pair(shape + 3u, student_t_tables);
-    metal::float2 _e15 = student_t_impl_pair(shape + 4u, student_t_tables);
-    metal::float2 _e18 = student_t_impl_pair(shape + 5u, student_t_tables);
-    metal::float2 _e21 = student_t_impl_pair(shape + 6u, student_t_tables);
-    metal::float2 _e24 = student_t_impl_pair(shape + 7u, student_t_tables);
-    metal::float2 _e27 = student_t_impl_pair(shape + 8u, student_t_tables);
-    metal::float2 _e30 = student_t_impl_pair(shape + 9u, student_t_tables);
-    metal::float2 _e33 = student_t_impl_pair(shape + 10u, student_t_tables);
-    return StudentTShape {_e3.x, _e3.y, _e6.x, _e6.y, _e9.x, _e9.y, _e12.x, shape + student_t_impl_f2u32(_e12.y), _e15.x, _e15.y, _e18.x, _e18.y, _e21.x, _e21.y, _e24.x, shape + student_t_impl_f2u32(_e24.y), _e27.x, shape + student_t_impl_f2u32(_e27.y), _e30.x, shape + student_t_impl_f2u32(_e30.y), _e33.x, _e33.y};
+    bool local = {};
+    metal::float2 _e4 = student_t_impl_pair(shape + 0u, student_t_tables);
+    metal::float2 _e7 = student_t_impl_pair(shape + 1u, student_t_tables);
+    metal::float2 _e10 = student_t_impl_pair(shape + 2u, student_t_tables);
+    metal::float2 _e13 = student_t_impl_pair(shape + 3u, student_t_tables);
+    metal::float2 _e16 = student_t_impl_pair(shape + 4u, student_t_tables);
+    metal::float2 _e19 = student_t_impl_pair(shape + 5u, student_t_tables);
+    metal::float2 _e22 = student_t_impl_pair(shape + 6u, student_t_tables);
+    metal::float2 _e25 = student_t_impl_pair(shape + 7u, student_t_tables);
+    metal::float2 _e28 = student_t_impl_pair(shape + 8u, student_t_tables);
+    metal::float2 _e31 = student_t_impl_pair(shape + 9u, student_t_tables);
+    metal::float2 _e34 = student_t_impl_pair(shape + 10u, student_t_tables);
+    float _e36 = student_t_impl_sigma(sigma_1.x);
+    float _e38 = student_t_impl_sigma(sigma_1.y);
+    if (sigma_1.x > 0.0) {
+        local = sigma_1.y > 0.0;
+    } else {
+        local = false;
+    }
+    bool _e49 = local;
+    return StudentTLobe {metal::float2(_e36, _e38), !(_e49), {}, shape, _e4.x, _e4.y, _e7.x, _e7.y, _e10.x, _e10.y, _e13.x, shape + student_t_impl_f2u32(_e13.y), _e16.x, _e16.y, _e19.x, _e19.y, _e22.x, _e22.y, _e25.x, shape + student_t_impl_f2u32(_e25.y), _e28.x, shape + student_t_impl_f2u32(_e28.y), _e31.x, shape + student_t_impl_f2u32(_e31.y), _e34.x, _e34.y};
 }
 
 inline StudentTAlbedoTable student_t_impl_albedo_table(
@@ -120,32 +156,18 @@ inline StudentTAlbedoTable student_t_impl_albedo_table(
     uint masking,
     metal::texture2d<float, metal::access::sample> student_t_tables
 ) {
-    uint at_4 = shape_1 + ((masking == STUDENT_T_UNCORRELATED) ? 11u : 21u);
-    metal::float2 _e10 = student_t_impl_pair(at_4 + 0u, student_t_tables);
-    metal::float2 _e13 = student_t_impl_pair(at_4 + 1u, student_t_tables);
-    metal::float2 _e16 = student_t_impl_pair(at_4 + 2u, student_t_tables);
-    metal::float2 _e19 = student_t_impl_pair(at_4 + 3u, student_t_tables);
-    metal::float2 _e22 = student_t_impl_pair(at_4 + 4u, student_t_tables);
-    metal::float2 _e25 = student_t_impl_pair(at_4 + 5u, student_t_tables);
-    metal::float2 _e28 = student_t_impl_pair(at_4 + 6u, student_t_tables);
-    metal::float2 _e31 = student_t_impl_pair(at_4 + 7u, student_t_tables);
-    metal::float2 _e34 = student_t_impl_pair(at_4 + 8u, student_t_tables);
-    metal::float2 _e37 = student_t_impl_pair(at_4 + 9u, student_t_tables);
+    uint at_5 = shape_1 + ((masking == STUDENT_T_UNCORRELATED) ? 11u : 21u);
+    metal::float2 _e10 = student_t_impl_pair(at_5 + 0u, student_t_tables);
+    metal::float2 _e13 = student_t_impl_pair(at_5 + 1u, student_t_tables);
+    metal::float2 _e16 = student_t_impl_pair(at_5 + 2u, student_t_tables);
+    metal::float2 _e19 = student_t_impl_pair(at_5 + 3u, student_t_tables);
+    metal::float2 _e22 = student_t_impl_pair(at_5 + 4u, student_t_tables);
+    metal::float2 _e25 = student_t_impl_pair(at_5 + 5u, student_t_tables);
+    metal::float2 _e28 = student_t_impl_pair(at_5 + 6u, student_t_tables);
+    metal::float2 _e31 = student_t_impl_pair(at_5 + 7u, student_t_tables);
+    metal::float2 _e34 = student_t_impl_pair(at_5 + 8u, student_t_tables);
+    metal::float2 _e37 = student_t_impl_pair(at_5 + 9u, student_t_tables);
     return StudentTAlbedoTable {shape_1 + student_t_impl_f2u32(_e10.x), shape_1 + student_t_impl_f2u32(_e10.y), _e13.x, _e13.y, _e16.x, _e16.y, _e19.x, _e19.y, _e22.x, _e22.y, _e25.x, _e25.y, _e28.x, _e28.y, _e31.x, _e31.y, _e34.x, _e34.y, _e37.x, _e37.y};
-}
-
-inline float student_t_impl_max(
-    float a,
-    float b
-) {
-    return (a > b) ? a : b;
-}
-
-inline float student_t_impl_min(
-    float a_1,
-    float b_1
-) {
-    return (a_1 < b_1) ? a_1 : b_1;
 }
 
 inline float student_t_impl_unit(
@@ -160,37 +182,29 @@ inline float student_t_impl_product(
     float a_2,
     float b_2
 ) {
-    bool local = {};
+    bool local_1 = {};
     if (b_2 > 1.0) {
-        local = a_2 > (340282300000000000000000000000000000000.0 / b_2);
+        local_1 = a_2 > (340282300000000000000000000000000000000.0 / b_2);
     } else {
-        local = false;
+        local_1 = false;
     }
-    bool _e10 = local;
+    bool _e10 = local_1;
     if (_e10) {
         return 340282300000000000000000000000000000000.0;
     }
     return a_2 * b_2;
 }
 
-inline float student_t_impl_sigma(
-    float sigma
-) {
-    float _e2 = student_t_impl_max(sigma, 0.00000001);
-    float _e4 = student_t_impl_min(_e2, 1000000.0);
-    return _e4;
-}
-
 inline float student_t_impl_log_growth(
     float x_1
 ) {
-    bool local_1 = {};
+    bool local_2 = {};
     if (x_1 >= -0.5) {
-        local_1 = x_1 <= 1.0;
+        local_2 = x_1 <= 1.0;
     } else {
-        local_1 = false;
+        local_2 = false;
     }
-    bool _e8 = local_1;
+    bool _e8 = local_2;
     if (!(_e8)) {
         return metal::log(1.0 + x_1);
     }
@@ -203,13 +217,13 @@ inline float student_t_impl_log_growth(
 inline float student_t_impl_log(
     float x_2
 ) {
-    bool local_2 = {};
+    bool local_3 = {};
     if (x_2 >= 0.5) {
-        local_2 = x_2 <= 2.0;
+        local_3 = x_2 <= 2.0;
     } else {
-        local_2 = false;
+        local_3 = false;
     }
-    bool _e8 = local_2;
+    bool _e8 = local_3;
     if (_e8) {
         float _e11 = student_t_impl_log_growth(x_2 - 1.0);
         return _e11;
@@ -235,23 +249,24 @@ inline StudentTImplPlace student_t_impl_place(
     return StudentTImplPlace {cell, x_4 - static_cast<float>(cell)};
 }
 
-inline float student_t_impl_cubic(
-    uint table,
-    StudentTImplPlace place,
-    metal::texture2d<float, metal::access::sample> student_t_tables
+inline float student_t_impl_hermite(
+    metal::float2 a_3,
+    metal::float2 b_3,
+    float w
 ) {
-    metal::float2 _e6 = student_t_impl_pair(table + (2u * place.cell), student_t_tables);
-    metal::float2 _e13 = student_t_impl_pair((table + (2u * place.cell)) + 1u, student_t_tables);
-    float w_6 = place.position;
-    return (_e6.x + (w_6 * _e6.y)) + ((w_6 * w_6) * (_e13.x + (w_6 * _e13.y)));
+    float value_a = 1.0 + (w * (w * ((w * 2.0) - 3.0)));
+    float slope_a = w * (1.0 + (w * (w - 2.0)));
+    float value_b = w * (w * (3.0 - (w * 2.0)));
+    float slope_b = w * (w * (w - 1.0));
+    return ((a_3.x * value_a) + (b_3.x * value_b)) + ((a_3.y * slope_a) + (b_3.y * slope_b));
 }
 
 inline StudentTImplDirection student_t_impl_stretch(
-    metal::float2 sigma_1,
-    metal::float3 w
+    metal::float2 sigma_2,
+    metal::float3 w_1
 ) {
-    float _e3 = student_t_impl_unit(w.z);
-    metal::float2 xy = sigma_1 * w.xy;
+    float _e3 = student_t_impl_unit(w_1.z);
+    metal::float2 xy = sigma_2 * w_1.xy;
     float square = (xy.x * xy.x) + (xy.y * xy.y);
     float rho = metal::sqrt(square);
     if (rho >= 0.000001) {
@@ -265,47 +280,56 @@ inline StudentTImplDirection student_t_impl_stretch(
     return StudentTImplDirection {metal::float2(1.0, 0.0), 1.0, 1.0 - up, up, 1.0 - up};
 }
 
-inline StudentTImplDirection student_t_impl_stretched(
-    metal::float2 sigma_2,
-    metal::float3 w_1
+inline float student_t_impl_cubic(
+    uint table,
+    StudentTImplPlace place,
+    metal::texture2d<float, metal::access::sample> student_t_tables
 ) {
-    float _e3 = student_t_impl_sigma(sigma_2.x);
-    float _e5 = student_t_impl_sigma(sigma_2.y);
-    metal::float2 rough = metal::float2(_e3, _e5);
-    StudentTImplDirection _e7 = student_t_impl_stretch(rough, w_1);
-    return _e7;
+    metal::float2 _e6 = student_t_impl_pair(table + (2u * place.cell), student_t_tables);
+    metal::float2 _e13 = student_t_impl_pair((table + (2u * place.cell)) + 1u, student_t_tables);
+    float w_7 = place.position;
+    return (_e6.x + (w_7 * _e6.y)) + ((w_7 * w_7) * (_e13.x + (w_7 * _e13.y)));
+}
+
+inline float student_t_impl_masking_at(
+    StudentTLobe lobe,
+    StudentTImplPlace place_1,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    float _e3 = student_t_impl_cubic(lobe.masking, place_1, student_t_tables);
+    return _e3;
 }
 
 inline float student_t_impl_inverse_area(
-    StudentTShape shape_2,
+    StudentTLobe lobe_1,
     StudentTImplDirection d,
     metal::texture2d<float, metal::access::sample> student_t_tables
 ) {
     float at_1 = {};
-    if (shape_2.is_ggx > 0.0) {
+    if (lobe_1.is_ggx > 0.0) {
         float tall_1 = d.z + metal::sqrt(d.square + (d.z * d.z));
         float _e14 = student_t_impl_max(tall_1, 0.000000000000000000000000000000000000011754944);
         return 2.0 / _e14;
     }
-    float across = shape_2.kappa * d.rho;
+    float across = lobe_1.kappa * d.rho;
     float _e23 = student_t_impl_max(d.z + across, 0.000000000000000000000000000001);
-    float r = shape_2.masking_cells / _e23;
+    float r = lobe_1.masking_cells / _e23;
     at_1 = d.z * r;
-    if (shape_2.masking_crowded > 0.0) {
+    if (lobe_1.masking_crowded > 0.0) {
         float _e33 = student_t_impl_unit(across / _e23);
-        at_1 = (1.0 - metal::sqrt(_e33)) * shape_2.masking_cells;
+        at_1 = (1.0 - metal::sqrt(_e33)) * lobe_1.masking_cells;
     }
     float _e39 = at_1;
-    StudentTImplPlace _e41 = student_t_impl_place(_e39, shape_2.masking_cells);
-    float _e43 = student_t_impl_cubic(shape_2.masking, _e41, student_t_tables);
-    return _e43 * r;
+    StudentTImplPlace _e41 = student_t_impl_place(_e39, lobe_1.masking_cells);
+    float _e42 = student_t_impl_masking_at(lobe_1, _e41, student_t_tables);
+    return _e42 * r;
 }
 
 inline float student_t_impl_dot(
-    metal::float3 a_3,
-    metal::float3 b_3
+    metal::float3 a_4,
+    metal::float3 b_4
 ) {
-    return ((a_3.x * b_3.x) + (a_3.y * b_3.y)) + (a_3.z * b_3.z);
+    return ((a_4.x * b_4.x) + (a_4.y * b_4.y)) + (a_4.z * b_4.z);
 }
 
 inline metal::float3 student_t_impl_raise(
@@ -332,141 +356,180 @@ inline metal::float3 student_t_impl_face(
 }
 
 inline float student_t_impl_d(
-    StudentTShape shape_3,
-    metal::float2 sigma_3,
-    metal::float3 m_2
+    StudentTLobe lobe_2,
+    metal::float3 m_2,
+    float length_square
 ) {
-    bool local_3 = {};
+    bool local_4 = {};
     float root = {};
     float growth = {};
-    float _e4 = student_t_impl_sigma(sigma_3.x);
-    float _e6 = student_t_impl_sigma(sigma_3.y);
-    metal::float2 rough_1 = metal::float2(_e4, _e6);
-    metal::float2 slope_1 = m_2.xy / rough_1;
+    metal::float2 slope_1 = m_2.xy / lobe_2.sigma;
     float square_1 = m_2.z * m_2.z;
-    float part = shape_3.d_s * ((slope_1.x * slope_1.x) + (slope_1.y * slope_1.y));
+    float part = lobe_2.d_s * ((slope_1.x * slope_1.x) + (slope_1.y * slope_1.y));
     if (m_2.z > 0.0) {
-        local_3 = part >= 0.0;
+        local_4 = part >= 0.0;
     } else {
-        local_3 = false;
+        local_4 = false;
     }
-    bool _e30 = local_3;
-    if (!(_e30)) {
+    bool _e26 = local_4;
+    if (!(_e26)) {
         return 0.0;
     }
-    float _e35 = student_t_impl_max(square_1 + part, 0.000000000000000000000000000000000000011754944);
-    root = 1.0 / _e35;
-    if (!((shape_3.is_ggx > 0.0))) {
-        growth = metal::log(_e35) - (2.0 * metal::log(m_2.z));
+    float _e31 = student_t_impl_max(square_1 + part, 0.000000000000000000000000000000000000011754944);
+    root = length_square / _e31;
+    if (!((lobe_2.is_ggx > 0.0))) {
+        growth = metal::log(_e31) - (2.0 * metal::log(m_2.z));
         if (part < (1000.0 * square_1)) {
-            float _e54 = student_t_impl_log_growth(part / square_1);
-            growth = _e54;
+            float _e49 = student_t_impl_log_growth(part / square_1);
+            growth = _e49;
         }
-        float _e55 = root;
-        float _e57 = growth;
-        root = _e55 * metal::exp(shape_3.d_power * _e57);
+        float _e50 = root;
+        float _e52 = growth;
+        root = _e50 * metal::exp(lobe_2.d_power * _e52);
     }
-    float scale = metal::sqrt(1.0 / ((3.1415927 * rough_1.x) * rough_1.y));
-    float _e69 = root;
-    float limited = metal::min(scale * metal::min(_e69, 1000000000000000000000000000000.0), 18446742000000000000.0);
+    float scale = metal::sqrt(1.0 / ((3.1415927 * lobe_2.sigma.x) * lobe_2.sigma.y));
+    float _e66 = root;
+    float limited = metal::min(scale * metal::min(_e66, 1000000000000000000000000000000.0), 18446742000000000000.0);
     return limited * limited;
 }
 
-inline float student_t_d(
-    uint shape_4,
-    metal::float2 sigma_4,
-    metal::float3 m_3,
-    metal::texture2d<float, metal::access::sample> student_t_tables
+inline float student_t_lobe_d(
+    StudentTLobe lobe_3,
+    metal::float3 m_3
 ) {
-    StudentTShape _e3 = student_t_impl_shape(shape_4, student_t_tables);
-    float _e4 = student_t_impl_d(_e3, sigma_4, m_3);
-    return _e4;
+    float _e3 = student_t_impl_d(lobe_3, m_3, 1.0);
+    return _e3;
 }
 
-inline float student_t_impl_masking(
-    StudentTShape shape_5,
-    metal::float2 sigma_5,
+inline float student_t_lobe_masking(
+    StudentTLobe lobe_4,
     metal::float3 w_2,
     metal::texture2d<float, metal::access::sample> student_t_tables
 ) {
-    StudentTImplDirection _e3 = student_t_impl_stretched(sigma_5, w_2);
-    float _e5 = student_t_impl_inverse_area(shape_5, _e3, student_t_tables);
+    StudentTImplDirection _e3 = student_t_impl_stretch(lobe_4.sigma, w_2);
+    float _e5 = student_t_impl_inverse_area(lobe_4, _e3, student_t_tables);
     float _e8 = student_t_impl_min(_e3.z * _e5, 1.0);
     return _e8;
 }
 
-inline float student_t_masking(
-    uint shape_6,
-    metal::float2 sigma_6,
+inline float student_t_lobe_lambda(
+    StudentTLobe lobe_5,
     metal::float3 w_3,
     metal::texture2d<float, metal::access::sample> student_t_tables
 ) {
-    StudentTShape _e3 = student_t_impl_shape(shape_6, student_t_tables);
-    float _e4 = student_t_impl_masking(_e3, sigma_6, w_3, student_t_tables);
-    return _e4;
+    float _e2 = student_t_lobe_masking(lobe_5, w_3, student_t_tables);
+    float _e4 = student_t_impl_max(_e2, 0.000000000000000000000000000000000000011754944);
+    return (1.0 / _e4) - 1.0;
 }
 
-inline float student_t_lambda(
-    uint shape_7,
-    metal::float2 sigma_7,
-    metal::float3 w_4,
-    metal::texture2d<float, metal::access::sample> student_t_tables
-) {
-    StudentTShape _e3 = student_t_impl_shape(shape_7, student_t_tables);
-    float _e4 = student_t_impl_masking(_e3, sigma_7, w_4, student_t_tables);
-    float _e6 = student_t_impl_max(_e4, 0.000000000000000000000000000000000000011754944);
-    return (1.0 / _e6) - 1.0;
-}
-
-inline float student_t_masking_shadowing(
-    uint shape_8,
-    metal::float2 sigma_8,
+inline float student_t_lobe_masking_shadowing(
+    StudentTLobe lobe_6,
     metal::float3 v_1,
     metal::float3 l,
     uint masking_1,
     metal::texture2d<float, metal::access::sample> student_t_tables
 ) {
-    bool local_4 = {};
-    StudentTShape _e5 = student_t_impl_shape(shape_8, student_t_tables);
-    float _e6 = student_t_impl_masking(_e5, sigma_8, v_1, student_t_tables);
-    float _e7 = student_t_impl_masking(_e5, sigma_8, l, student_t_tables);
-    float both = _e6 * _e7;
-    float sum = (_e6 + _e7) - both;
+    bool local_5 = {};
+    float _e4 = student_t_lobe_masking(lobe_6, v_1, student_t_tables);
+    float _e5 = student_t_lobe_masking(lobe_6, l, student_t_tables);
+    float both = _e4 * _e5;
+    float sum = (_e4 + _e5) - both;
     if (!((masking_1 == STUDENT_T_UNCORRELATED))) {
-        local_4 = !((sum > 0.0));
+        local_5 = !((sum > 0.0));
     } else {
-        local_4 = true;
+        local_5 = true;
     }
-    bool _e20 = local_4;
-    if (_e20) {
+    bool _e18 = local_5;
+    if (_e18) {
         return both;
     }
     return both / sum;
 }
 
-inline float student_t_reflection_weight(
-    uint shape_9,
-    metal::float2 sigma_9,
-    metal::float3 v_2,
-    metal::float3 l_1,
-    uint masking_2,
-    metal::texture2d<float, metal::access::sample> student_t_tables
+inline float student_t_impl_weight(
+    float a_5,
+    float b_5,
+    uint masking_2
 ) {
-    bool local_5 = {};
-    StudentTShape _e5 = student_t_impl_shape(shape_9, student_t_tables);
-    float _e6 = student_t_impl_masking(_e5, sigma_9, l_1, student_t_tables);
-    if (v_2.z > 0.0) {
-        local_5 = _e6 > 0.0;
-    } else {
-        local_5 = false;
-    }
-    bool _e15 = local_5;
-    if (!(_e15)) {
+    if (!((b_5 > 0.0))) {
         return 0.0;
     }
-    float _e18 = student_t_impl_masking(_e5, sigma_9, v_2, student_t_tables);
-    float both_1 = _e6 + (_e18 * (1.0 - _e6));
-    return _e6 / ((masking_2 == STUDENT_T_UNCORRELATED) ? 1.0 : both_1);
+    if (masking_2 == STUDENT_T_UNCORRELATED) {
+        return b_5;
+    }
+    return b_5 / (b_5 + (a_5 * (1.0 - b_5)));
+}
+
+inline float student_t_lobe_reflection_weight(
+    StudentTLobe lobe_7,
+    metal::float3 v_2,
+    metal::float3 l_1,
+    uint masking_3,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    if (!((v_2.z > 0.0))) {
+        return 0.0;
+    }
+    float _e9 = student_t_lobe_masking(lobe_7, v_2, student_t_tables);
+    float _e10 = student_t_lobe_masking(lobe_7, l_1, student_t_tables);
+    float _e11 = student_t_impl_weight(_e9, _e10, masking_3);
+    return _e11;
+}
+
+inline metal::float2 student_t_lobe_eval_pdf(
+    StudentTLobe lobe_8,
+    metal::float3 v_3,
+    metal::float3 l_2,
+    uint masking_4,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    bool local_6 = {};
+    if (v_3.z > 0.0) {
+        local_6 = l_2.z > 0.0;
+    } else {
+        local_6 = false;
+    }
+    bool _e13 = local_6;
+    if (!(_e13)) {
+        return metal::float2(0.0);
+    }
+    metal::float3 both_1 = v_3 + l_2;
+    metal::float3 m_10 = metal::float3(both_1.xy, metal::max(both_1.z, 0.00000000000000000007666467));
+    StudentTImplDirection _e24 = student_t_impl_stretch(lobe_8.sigma, v_3);
+    float _e25 = student_t_impl_inverse_area(lobe_8, _e24, student_t_tables);
+    float _e29 = student_t_impl_min(_e24.z * _e25, 1.0);
+    float _e30 = student_t_lobe_masking(lobe_8, l_2, student_t_tables);
+    float _e31 = student_t_impl_weight(_e29, _e30, masking_4);
+    float _e32 = student_t_impl_dot(m_10, m_10);
+    float _e33 = student_t_impl_d(lobe_8, m_10, _e32);
+    float density = 0.25 * _e33;
+    float _e36 = student_t_impl_product(density, _e25);
+    float _e43 = student_t_impl_product(_e31 * _e36, 1.0 / metal::max(l_2.z, 0.0000000000000000000000000000000000001));
+    return metal::float2(_e43, _e36);
+}
+
+inline bool student_t_effectively_smooth(
+    StudentTLobe lobe_9,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    bool local_7 = {};
+    float sigma_17 = metal::max(lobe_9.sigma.x, lobe_9.sigma.y);
+    if (!(((0.56 * sigma_17) < 0.001))) {
+        return false;
+    }
+    StudentTImplDirection level = StudentTImplDirection {metal::float2(0.0), 1.0, 1.0, 0.0, 1.0};
+    float _e19 = student_t_impl_inverse_area(lobe_9, level, student_t_tables);
+    float mean = 2.0 / _e19;
+    float rho_1 = 0.99995 * sigma_17;
+    StudentTImplDirection grazing = StudentTImplDirection {metal::float2(0.0), 1.0, rho_1, 0.01, rho_1 * rho_1};
+    if ((sigma_17 * mean) < 0.001) {
+        float _e35 = student_t_impl_inverse_area(lobe_9, grazing, student_t_tables);
+        local_7 = (1.0 - (0.01 * _e35)) <= 0.0025;
+    } else {
+        local_7 = false;
+    }
+    bool _e43 = local_7;
+    return _e43;
 }
 
 inline float student_t_impl_sine(
@@ -489,41 +552,41 @@ inline metal::float2 student_t_impl_turn(
 }
 
 inline metal::float3 student_t_impl_sample_cap(
-    metal::float2 sigma_10,
-    metal::float3 v_3,
+    metal::float2 sigma_3,
+    metal::float3 v_4,
     metal::float2 u_1
 ) {
-    metal::float3 w_5 = {};
+    metal::float3 w_4 = {};
     float tall = {};
-    float _e6 = student_t_impl_max(v_3.z, 0.0);
-    metal::float3 above = metal::float3(v_3.xy, _e6);
-    w_5 = metal::float3(sigma_10 * above.xy, above.z);
-    metal::float3 _e13 = w_5;
-    metal::float3 _e14 = w_5;
+    float _e6 = student_t_impl_max(v_4.z, 0.0);
+    metal::float3 above = metal::float3(v_4.xy, _e6);
+    w_4 = metal::float3(sigma_3 * above.xy, above.z);
+    metal::float3 _e13 = w_4;
+    metal::float3 _e14 = w_4;
     float _e15 = student_t_impl_dot(_e13, _e14);
     tall = metal::sqrt(_e15);
     float _e18 = tall;
     if (!((_e18 >= 0.000001))) {
-        metal::float3 _e26 = w_5;
+        metal::float3 _e26 = w_4;
         float _e27 = tall;
         float _e32 = tall;
-        w_5 = (_e32 > 0.0) ? (_e26 / metal::float3(metal::max(_e27, 0.0000000000000000000000000000000000001))) : metal::float3(0.0, 0.0, 1.0);
+        w_4 = (_e32 > 0.0) ? (_e26 / metal::float3(metal::max(_e27, 0.0000000000000000000000000000000000001))) : metal::float3(0.0, 0.0, 1.0);
         tall = 1.0;
     }
     float _e38 = student_t_impl_unit(u_1.x);
     float _e43 = tall;
-    float _e45 = w_5.z;
+    float _e45 = w_4.z;
     float height = metal::max(1.0 - _e38, 0.000000059604645) * (_e43 + _e45);
-    float _e49 = w_5.z;
+    float _e49 = w_4.z;
     float up_1 = height - _e49;
     float _e51 = tall;
     float _e53 = tall;
     float radius = metal::sqrt(metal::max((_e51 - up_1) * (_e53 + up_1), 0.0));
-    metal::float3 _e59 = w_5;
+    metal::float3 _e59 = w_4;
     float _e62 = student_t_impl_unit(u_1.y);
     metal::float2 _e63 = student_t_impl_turn(_e62);
     metal::float2 point = _e59.xy + (radius * _e63);
-    metal::float3 _e69 = student_t_impl_raise(metal::float3(sigma_10 * point, height), 1.0);
+    metal::float3 _e69 = student_t_impl_raise(metal::float3(sigma_3 * point, height), 1.0);
     metal::float3 _e70 = student_t_impl_face(above, _e69);
     return _e70;
 }
@@ -537,200 +600,267 @@ inline float student_t_impl_end(
 }
 
 inline StudentTImplHalfSlope student_t_impl_heavy_slope(
-    StudentTShape shape_10,
+    StudentTLobe lobe_10,
     float number
 ) {
     float _e4 = student_t_impl_log(metal::max(number, 0.0000000000000000000000000000000000001));
-    float power_1 = metal::max(_e4 * shape_10.heavy_exponent, -69.3);
+    float power_1 = metal::max(_e4 * lobe_10.heavy_exponent, -69.3);
     float zeta = metal::exp(power_1);
     float large = metal::max(zeta, 0.000000000000001);
     float _e14 = student_t_impl_exp_growth(2.0 * power_1);
     float x_8 = 0.5 * metal::sqrt(metal::max(-(_e14), 0.0));
-    float z = large * shape_10.heavy_root_s;
+    float z = large * lobe_10.heavy_root_s;
     return StudentTImplHalfSlope {x_8, z, 1.0, zeta / large, x_8 + z};
 }
 
-inline StudentTImplHalfSlope student_t_impl_table_slope(
-    StudentTShape shape_11,
-    float along,
+inline float student_t_impl_along_at(
+    StudentTLobe lobe_11,
     StudentTImplPlace view,
+    uint second,
+    StudentTImplPlace number_1,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    metal::float2 a_6 = {};
+    metal::float2 b_6 = {};
+    uint numbers = student_t_impl_f2u32(lobe_11.numbers);
+    uint low = (lobe_11.slopes + (((2u * view.cell) + second) * numbers)) + number_1.cell;
+    uint high = low + (2u * numbers);
+    metal::float2 _e18 = student_t_impl_pair(low, student_t_tables);
+    a_6 = _e18;
+    metal::float2 _e22 = student_t_impl_pair(low + 1u, student_t_tables);
+    b_6 = _e22;
+    metal::float2 _e24 = a_6;
+    metal::float2 _e26 = student_t_impl_pair(high, student_t_tables);
+    metal::float2 _e27 = a_6;
+    a_6 = _e24 + (view.position * (_e26 - _e27));
+    metal::float2 _e31 = b_6;
+    metal::float2 _e35 = student_t_impl_pair(high + 1u, student_t_tables);
+    metal::float2 _e36 = b_6;
+    b_6 = _e31 + (view.position * (_e35 - _e36));
+    metal::float2 _e40 = a_6;
+    metal::float2 _e41 = b_6;
+    float _e43 = student_t_impl_hermite(_e40, _e41, number_1.position);
+    return _e43;
+}
+
+inline StudentTImplHalfSlope student_t_impl_table_slope(
+    StudentTLobe lobe_12,
+    float along,
+    float at_2,
     float silhouette,
     metal::texture2d<float, metal::access::sample> student_t_tables
 ) {
-    metal::float2 a_4 = {};
-    metal::float2 b_4 = {};
-    bool second = along > 0.5;
-    float _e6 = student_t_impl_end(along);
-    StudentTImplPlace _e12 = student_t_impl_place(_e6 * shape_11.along_scale, shape_11.numbers - 1.0);
-    uint numbers = student_t_impl_f2u32(shape_11.numbers);
-    uint low = (shape_11.slopes + (((2u * view.cell) + static_cast<uint>(second)) * numbers)) + _e12.cell;
-    uint high = low + (2u * numbers);
-    metal::float2 _e28 = student_t_impl_pair(low, student_t_tables);
-    a_4 = _e28;
-    metal::float2 _e32 = student_t_impl_pair(low + 1u, student_t_tables);
-    b_4 = _e32;
-    metal::float2 _e34 = a_4;
-    metal::float2 _e36 = student_t_impl_pair(high, student_t_tables);
-    metal::float2 _e37 = a_4;
-    a_4 = _e34 + (view.position * (_e36 - _e37));
-    metal::float2 _e41 = b_4;
-    metal::float2 _e45 = student_t_impl_pair(high + 1u, student_t_tables);
-    metal::float2 _e46 = b_4;
-    b_4 = _e41 + (view.position * (_e45 - _e46));
-    float w_7 = _e12.position;
-    float value_a = 1.0 + (w_7 * (w_7 * ((w_7 * 2.0) - 3.0)));
-    float slope_a = w_7 * (1.0 + (w_7 * (w_7 - 2.0)));
-    float value_b = w_7 * (w_7 * (3.0 - (w_7 * 2.0)));
-    float slope_b = w_7 * (w_7 * (w_7 - 1.0));
-    float _e76 = a_4.x;
-    float _e79 = b_4.x;
-    float _e83 = a_4.y;
-    float _e86 = b_4.y;
-    float g = ((_e76 * value_a) + (_e79 * value_b)) + ((_e83 * slope_a) + (_e86 * slope_b));
-    float sign = second ? -1.0 : 1.0;
-    float clear = g - (second ? 0.0 : silhouette);
-    return StudentTImplHalfSlope {g - 1.0, g * (2.0 - g), sign, 1.0, clear};
+    bool second_1 = along > 0.5;
+    StudentTImplPlace _e7 = student_t_impl_place(at_2, lobe_12.rows);
+    float _e8 = student_t_impl_end(along);
+    StudentTImplPlace _e14 = student_t_impl_place(_e8 * lobe_12.along_scale, lobe_12.numbers - 1.0);
+    float _e16 = student_t_impl_along_at(lobe_12, _e7, static_cast<uint>(second_1), _e14, student_t_tables);
+    float sign = second_1 ? -1.0 : 1.0;
+    float clear = _e16 - (second_1 ? 0.0 : silhouette);
+    return StudentTImplHalfSlope {_e16 - 1.0, _e16 * (2.0 - _e16), sign, 1.0, clear};
+}
+
+inline float student_t_impl_across_at(
+    StudentTLobe lobe_13,
+    StudentTImplPlace place_2,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    float _e3 = student_t_impl_cubic(lobe_13.across, place_2, student_t_tables);
+    return _e3;
+}
+
+inline metal::float2 student_t_impl_share_at(
+    StudentTLobe lobe_14,
+    StudentTImplPlace place_3,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    float _e3 = student_t_impl_cubic(lobe_14.heavy, place_3, student_t_tables);
+    return metal::float2(_e3, 1.0 - _e3);
 }
 
 inline metal::float3 student_t_impl_sample_tables(
-    StudentTShape shape_12,
-    metal::float2 sigma_11,
-    metal::float3 v_4,
+    StudentTLobe lobe_15,
+    metal::float3 v_5,
     metal::float2 u_3,
     metal::texture2d<float, metal::access::sample> student_t_tables
 ) {
     float rest = {};
     float along_1 = {};
     bool is_heavy = false;
-    float number_1 = 1.0;
+    float number_2 = 1.0;
     StudentTImplHalfSlope slope = {};
-    float _e5 = student_t_impl_end(u_3.y);
-    StudentTImplPlace _e13 = student_t_impl_place(_e5 * shape_12.across_scale, (0.8408964 * shape_12.across_scale) + 0.5);
-    float _e15 = student_t_impl_cubic(shape_12.across, _e13, student_t_tables);
-    float t = (u_3.y > 0.5) ? (1.0 - _e15) : (_e15 - 1.0);
-    float tz = _e15 * (2.0 - _e15);
-    StudentTImplDirection _e27 = student_t_impl_stretch(sigma_11, v_4);
-    float tall_2 = metal::sqrt(_e27.square + (_e27.z * _e27.z));
-    rest = 1.0 - (_e27.z / (_e27.rho + tall_2));
-    if (shape_12.heavy_per_row > 0.0) {
-        float steep = tall_2 + _e27.z;
-        rest = (_e27.rho * (steep + _e27.rho)) / (steep * (_e27.rho + tall_2));
+    float _e4 = student_t_impl_end(u_3.y);
+    StudentTImplPlace _e12 = student_t_impl_place(_e4 * lobe_15.across_scale, (0.8408964 * lobe_15.across_scale) + 0.5);
+    float _e13 = student_t_impl_across_at(lobe_15, _e12, student_t_tables);
+    float t = (u_3.y > 0.5) ? (1.0 - _e13) : (_e13 - 1.0);
+    float tz = _e13 * (2.0 - _e13);
+    StudentTImplDirection _e26 = student_t_impl_stretch(lobe_15.sigma, v_5);
+    float tall_2 = metal::sqrt(_e26.square + (_e26.z * _e26.z));
+    rest = 1.0 - (_e26.z / (_e26.rho + tall_2));
+    if (lobe_15.heavy_per_row > 0.0) {
+        float steep = tall_2 + _e26.z;
+        rest = (_e26.rho * (steep + _e26.rho)) / (steep * (_e26.rho + tall_2));
     }
-    float _e54 = rest;
-    float _e55 = student_t_impl_unit(_e54);
-    float at_5 = metal::max(metal::max(shape_12.rows_first - (shape_12.rows_first * _e55), shape_12.rows_second_end - (shape_12.rows_second * _e55)), shape_12.rows - (shape_12.rows_third * _e55));
-    float _e71 = student_t_impl_unit(u_3.x);
-    along_1 = _e71;
-    if (shape_12.heavy_per_row > 0.0) {
-        float cells = shape_12.heavy_per_row;
-        StudentTImplPlace _e84 = student_t_impl_place(at_5 * cells, shape_12.rows * cells);
-        float _e86 = student_t_impl_cubic(shape_12.heavy, _e84, student_t_tables);
-        float rest_2 = 1.0 - _e86;
-        float _e89 = along_1;
-        is_heavy = _e89 > rest_2;
-        bool _e91 = is_heavy;
-        if (_e91) {
-            float _e92 = along_1;
-            number_1 = metal::min((1.0 - _e92) / _e86, 1.0);
+    float _e53 = rest;
+    float _e54 = student_t_impl_unit(_e53);
+    float at_6 = metal::max(metal::max(lobe_15.rows_first - (lobe_15.rows_first * _e54), lobe_15.rows_second_end - (lobe_15.rows_second * _e54)), lobe_15.rows - (lobe_15.rows_third * _e54));
+    float _e70 = student_t_impl_unit(u_3.x);
+    along_1 = _e70;
+    if (lobe_15.heavy_per_row > 0.0) {
+        float cells = lobe_15.heavy_per_row;
+        StudentTImplPlace _e83 = student_t_impl_place(at_6 * cells, lobe_15.rows * cells);
+        metal::float2 _e84 = student_t_impl_share_at(lobe_15, _e83, student_t_tables);
+        float _e85 = along_1;
+        is_heavy = _e85 > _e84.y;
+        bool _e88 = is_heavy;
+        if (_e88) {
+            float _e89 = along_1;
+            number_2 = metal::min((1.0 - _e89) / _e84.x, 1.0);
         }
-        float _e98 = along_1;
-        along_1 = _e98 / rest_2;
+        float _e96 = along_1;
+        along_1 = _e96 / _e84.y;
     }
-    bool _e101 = is_heavy;
-    if (_e101) {
-        float _e102 = number_1;
-        StudentTImplHalfSlope _e103 = student_t_impl_heavy_slope(shape_12, _e102);
-        slope = _e103;
+    bool _e100 = is_heavy;
+    if (_e100) {
+        float _e101 = number_2;
+        StudentTImplHalfSlope _e102 = student_t_impl_heavy_slope(lobe_15, _e101);
+        slope = _e102;
     } else {
-        StudentTImplPlace _e105 = student_t_impl_place(at_5, shape_12.rows);
-        float _e106 = along_1;
-        StudentTImplHalfSlope _e107 = student_t_impl_table_slope(shape_12, _e106, _e105, _e55, student_t_tables);
-        slope = _e107;
+        float _e103 = along_1;
+        StudentTImplHalfSlope _e104 = student_t_impl_table_slope(lobe_15, _e103, at_6, _e54, student_t_tables);
+        slope = _e104;
     }
-    float _e109 = slope.z;
-    float _e111 = slope.z;
-    float _e117 = slope.x;
-    float _e119 = slope.x;
-    float norm = metal::sqrt((_e109 * _e111) + ((4.0 * shape_12.s) * (_e117 * _e119)));
-    float _e125 = slope.x;
-    float _e127 = slope.sign;
-    float ahead = _e125 * (_e127 * tz);
+    float _e106 = slope.z;
+    float _e108 = slope.z;
+    float _e114 = slope.x;
+    float _e116 = slope.x;
+    float norm = metal::sqrt((_e106 * _e108) + ((4.0 * lobe_15.s) * (_e114 * _e116)));
+    float _e122 = slope.x;
+    float _e124 = slope.sign;
+    float ahead = _e122 * (_e124 * tz);
     float aside = norm * t;
-    metal::float2 turned = metal::float2((ahead * _e27.xy.x) - (aside * _e27.xy.y), (ahead * _e27.xy.y) + (aside * _e27.xy.x));
-    float _e148 = slope.z;
-    float _e156 = slope.shrink;
-    metal::float3 _e157 = student_t_impl_raise(metal::float3(sigma_11 * turned, _e148 * (0.5 * (_e27.frame * tz))), _e156);
-    float _e159 = slope.clear;
-    if (!(((_e159 * tz) >= ((0.00001 * tz) + (0.00002 * metal::abs(t)))))) {
-        metal::float3 _e172 = student_t_impl_face(metal::float3(v_4.xy, _e27.z), _e157);
-        return _e172;
+    metal::float2 turned = metal::float2((ahead * _e26.xy.x) - (aside * _e26.xy.y), (ahead * _e26.xy.y) + (aside * _e26.xy.x));
+    float _e146 = slope.z;
+    float _e154 = slope.shrink;
+    metal::float3 _e155 = student_t_impl_raise(metal::float3(lobe_15.sigma * turned, _e146 * (0.5 * (_e26.frame * tz))), _e154);
+    float _e157 = slope.clear;
+    if (!(((_e157 * tz) >= ((0.00001 * tz) + (0.00002 * metal::abs(t)))))) {
+        metal::float3 _e170 = student_t_impl_face(metal::float3(v_5.xy, _e26.z), _e155);
+        return _e170;
     }
-    return _e157;
+    return _e155;
 }
 
-inline metal::float3 student_t_sample_visible_normal(
-    uint shape_13,
-    metal::float2 sigma_12,
-    metal::float3 v_5,
+inline metal::float3 student_t_lobe_sample_visible_normal(
+    StudentTLobe lobe_16,
+    metal::float3 v_6,
     metal::float2 u_4,
     metal::texture2d<float, metal::access::sample> student_t_tables
 ) {
-    StudentTShape _e4 = student_t_impl_shape(shape_13, student_t_tables);
-    float _e6 = student_t_impl_sigma(sigma_12.x);
-    float _e8 = student_t_impl_sigma(sigma_12.y);
-    metal::float2 rough_2 = metal::float2(_e6, _e8);
-    if (_e4.is_ggx > 0.0) {
-        metal::float3 _e13 = student_t_impl_sample_cap(rough_2, v_5, u_4);
-        return _e13;
+    if (lobe_16.is_ggx > 0.0) {
+        metal::float3 _e7 = student_t_impl_sample_cap(lobe_16.sigma, v_6, u_4);
+        return _e7;
     }
-    metal::float3 _e14 = student_t_impl_sample_tables(_e4, rough_2, v_5, u_4, student_t_tables);
-    return _e14;
+    metal::float3 _e8 = student_t_impl_sample_tables(lobe_16, v_6, u_4, student_t_tables);
+    return _e8;
 }
 
-inline float student_t_visible_normal_pdf(
-    uint shape_14,
-    metal::float2 sigma_13,
-    metal::float3 v_6,
+inline float student_t_lobe_visible_normal_pdf(
+    StudentTLobe lobe_17,
+    metal::float3 v_7,
     metal::float3 m_4,
     metal::texture2d<float, metal::access::sample> student_t_tables
 ) {
-    StudentTShape _e4 = student_t_impl_shape(shape_14, student_t_tables);
-    float _e5 = student_t_impl_dot(v_6, m_4);
-    float _e7 = student_t_impl_max(_e5, 0.0);
-    float _e8 = student_t_impl_d(_e4, sigma_13, m_4);
-    float density = _e7 * _e8;
-    StudentTImplDirection _e10 = student_t_impl_stretched(sigma_13, v_6);
-    float _e11 = student_t_impl_inverse_area(_e4, _e10, student_t_tables);
-    float _e12 = student_t_impl_product(density, _e11);
-    return _e12;
+    float _e3 = student_t_impl_dot(v_7, m_4);
+    float _e5 = student_t_impl_max(_e3, 0.0);
+    float _e6 = student_t_lobe_d(lobe_17, m_4);
+    float density_1 = _e5 * _e6;
+    StudentTImplDirection _e9 = student_t_impl_stretch(lobe_17.sigma, v_7);
+    float _e10 = student_t_impl_inverse_area(lobe_17, _e9, student_t_tables);
+    float _e11 = student_t_impl_product(density_1, _e10);
+    return _e11;
 }
 
 inline metal::float3 student_t_reflect(
-    metal::float3 v_7,
+    metal::float3 v_8,
     metal::float3 m_5
 ) {
-    float _e2 = student_t_impl_dot(v_7, m_5);
-    return ((2.0 * _e2) * m_5) - v_7;
+    float _e2 = student_t_impl_dot(v_8, m_5);
+    return ((2.0 * _e2) * m_5) - v_8;
 }
 
-inline float student_t_reflection_pdf(
-    uint shape_15,
-    metal::float2 sigma_14,
-    metal::float3 v_8,
+inline float student_t_lobe_reflection_pdf(
+    StudentTLobe lobe_18,
+    metal::float3 v_9,
     metal::float3 m_6,
     metal::texture2d<float, metal::access::sample> student_t_tables
 ) {
-    float _e4 = student_t_impl_dot(v_8, m_6);
-    if (!((_e4 > 0.0))) {
+    float _e3 = student_t_impl_dot(v_9, m_6);
+    if (!((_e3 > 0.0))) {
         return 0.0;
     }
-    StudentTShape _e9 = student_t_impl_shape(shape_15, student_t_tables);
-    float _e10 = student_t_impl_d(_e9, sigma_14, m_6);
-    float density_1 = 0.25 * _e10;
-    StudentTImplDirection _e13 = student_t_impl_stretched(sigma_14, v_8);
-    float _e14 = student_t_impl_inverse_area(_e9, _e13, student_t_tables);
-    float _e15 = student_t_impl_product(density_1, _e14);
-    return _e15;
+    float _e8 = student_t_lobe_d(lobe_18, m_6);
+    float density_2 = 0.25 * _e8;
+    StudentTImplDirection _e12 = student_t_impl_stretch(lobe_18.sigma, v_9);
+    float _e13 = student_t_impl_inverse_area(lobe_18, _e12, student_t_tables);
+    float _e14 = student_t_impl_product(density_2, _e13);
+    return _e14;
+}
+
+inline metal::float3 student_t_impl_mirror(
+    float mu
+) {
+    float k = 1.0 - mu;
+    float fourth = (k * k) * (k * k);
+    return metal::float3(0.0, fourth * k, (17.651384 * mu) * (fourth * (k * k)));
+}
+
+inline metal::float3 student_t_impl_mirror_average(
+) {
+    return metal::float3(0.0, 0.04761905, 0.14009036);
+}
+
+inline metal::float3 student_t_impl_limit(
+    metal::float3 moments
+) {
+    float _e3 = student_t_impl_max(moments.y, 0.0);
+    float _e5 = student_t_impl_min(_e3, moments.x);
+    float _e9 = student_t_impl_unit(moments.z);
+    return metal::float3(moments.x - _e5, _e5, _e9);
+}
+
+inline StudentTImplAlbedo student_t_impl_albedo_of(
+    StudentTLobe lobe_19,
+    uint masking_5,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    bool local_8 = {};
+    StudentTAlbedoTable _e3 = student_t_impl_albedo_table(lobe_19.shape, masking_5, student_t_tables);
+    float stand_in = metal::sqrt(lobe_19.sigma.x * lobe_19.sigma.y);
+    float _e11 = student_t_impl_max(stand_in, _e3.sigma_min);
+    float _e13 = student_t_impl_min(_e11, _e3.sigma_max);
+    float lowest = (_e3.floor * (_e3.slope * _e13)) / (_e3.floor + (_e3.slope * _e13));
+    float _e25 = student_t_impl_log_growth(_e13 / _e3.offset);
+    float coordinate = (_e25 + (_e3.slow * metal::log(_e13 / _e3.first))) + (_e3.linear * _e13);
+    if (!(lobe_19.is_mirror)) {
+        local_8 = _e3.values == lobe_19.shape;
+    } else {
+        local_8 = true;
+    }
+    bool mirror = local_8;
+    return StudentTImplAlbedo {_e3, mirror ? 0.0 : _e13, (coordinate - _e3.start) / _e3.range, lowest};
+}
+
+inline float student_t_impl_view(
+    StudentTImplAlbedo a_7,
+    float mu_1
+) {
+    float sine = metal::sqrt(metal::max((1.0 - mu_1) * (1.0 + mu_1), 0.0));
+    float x_9 = mu_1 / (mu_1 + ((a_7.table.kappa * a_7.sigma) * sine));
+    float h = mu_1 / (1.0 + sine);
+    float nu = a_7.table.spread * a_7.sigma;
+    float roots = (a_7.table.share * metal::sqrt(metal::sqrt(x_9))) + ((1.0 - a_7.table.share) * metal::sqrt(metal::sqrt(h)));
+    return ((a_7.table.weight * x_9) + (a_7.table.normal * (nu / (nu + sine)))) + (((1.0 - a_7.table.weight) - a_7.table.normal) * roots);
 }
 
 inline StudentTImplSix student_t_impl_six(
@@ -740,105 +870,53 @@ inline StudentTImplSix student_t_impl_six(
     float _e3 = student_t_impl_max(x_6, 0.0);
     float _e6 = student_t_impl_min(_e3, n - 1.0);
     float start = metal::max(metal::min(metal::floor(_e6) - 2.0, n - 6.0), 0.0);
-    float a_9 = _e6 - start;
-    float b_5 = a_9 - 1.0;
-    float c = a_9 - 2.0;
-    float d_1 = a_9 - 3.0;
-    float e = a_9 - 4.0;
-    float f = a_9 - 5.0;
-    metal::float3 first = metal::float3((b_5 * c) * -0.008333334, (a_9 * c) * 0.041666668, (a_9 * b_5) * -0.083333336);
+    float a_12 = _e6 - start;
+    float b_7 = a_12 - 1.0;
+    float c = a_12 - 2.0;
+    float d_1 = a_12 - 3.0;
+    float e = a_12 - 4.0;
+    float f = a_12 - 5.0;
+    metal::float3 first = metal::float3((b_7 * c) * -0.008333334, (a_12 * c) * 0.041666668, (a_12 * b_7) * -0.083333336);
     metal::float3 last_1 = metal::float3((e * f) * 0.083333336, (d_1 * f) * -0.041666668, (d_1 * e) * 0.008333334);
-    return StudentTImplSix {student_t_impl_f2u32(start), {}, ((d_1 * e) * f) * first, ((a_9 * b_5) * c) * last_1};
+    return StudentTImplSix {student_t_impl_f2u32(start), {}, ((d_1 * e) * f) * first, ((a_12 * b_7) * c) * last_1};
 }
 
 inline metal::float3 student_t_impl_node(
-    uint at_2,
+    uint at_3,
     metal::texture2d<float, metal::access::sample> student_t_tables
 ) {
-    metal::float2 _e1 = student_t_impl_pair(at_2, student_t_tables);
-    metal::float2 _e4 = student_t_impl_pair(at_2 + 1u, student_t_tables);
+    metal::float2 _e1 = student_t_impl_pair(at_3, student_t_tables);
+    metal::float2 _e4 = student_t_impl_pair(at_3 + 1u, student_t_tables);
     return metal::float3(_e1, _e4.x);
 }
 
 inline metal::float3 student_t_impl_row(
-    uint at_3,
+    uint at_4,
     StudentTImplSix six,
     metal::float3 less,
     metal::texture2d<float, metal::access::sample> student_t_tables
 ) {
-    metal::float3 _e3 = student_t_impl_node(at_3, student_t_tables);
-    metal::float3 _e10 = student_t_impl_node(at_3 + 2u, student_t_tables);
-    metal::float3 _e18 = student_t_impl_node(at_3 + 4u, student_t_tables);
-    metal::float3 _e26 = student_t_impl_node(at_3 + 6u, student_t_tables);
-    metal::float3 _e33 = student_t_impl_node(at_3 + 8u, student_t_tables);
-    metal::float3 _e41 = student_t_impl_node(at_3 + 10u, student_t_tables);
+    metal::float3 _e3 = student_t_impl_node(at_4, student_t_tables);
+    metal::float3 _e10 = student_t_impl_node(at_4 + 2u, student_t_tables);
+    metal::float3 _e18 = student_t_impl_node(at_4 + 4u, student_t_tables);
+    metal::float3 _e26 = student_t_impl_node(at_4 + 6u, student_t_tables);
+    metal::float3 _e33 = student_t_impl_node(at_4 + 8u, student_t_tables);
+    metal::float3 _e41 = student_t_impl_node(at_4 + 10u, student_t_tables);
     return ((((_e3 - less) * six.a.x) + ((_e10 - less) * six.a.y)) + ((_e18 - less) * six.a.z)) + ((((_e26 - less) * six.b.x) + ((_e33 - less) * six.b.y)) + ((_e41 - less) * six.b.z));
 }
 
-inline StudentTImplAlbedo student_t_impl_albedo_of(
-    uint shape_16,
-    metal::float2 sigma_15,
-    uint masking_3,
-    metal::texture2d<float, metal::access::sample> student_t_tables
-) {
-    bool local_6 = {};
-    bool local_7 = {};
-    StudentTAlbedoTable _e3 = student_t_impl_albedo_table(shape_16, masking_3, student_t_tables);
-    float _e5 = student_t_impl_sigma(sigma_15.x);
-    float _e7 = student_t_impl_sigma(sigma_15.y);
-    float product = _e5 * _e7;
-    float _e11 = student_t_impl_max(metal::sqrt(product), _e3.sigma_min);
-    float _e13 = student_t_impl_min(_e11, _e3.sigma_max);
-    float lowest = (_e3.floor * (_e3.slope * _e13)) / (_e3.floor + (_e3.slope * _e13));
-    float _e25 = student_t_impl_log_growth(_e13 / _e3.offset);
-    float coordinate = (_e25 + (_e3.slow * metal::log(_e13 / _e3.first))) + (_e3.linear * _e13);
-    if (!((_e3.values == shape_16))) {
-        if (sigma_15.x > 0.0) {
-            local_7 = sigma_15.y > 0.0;
-        } else {
-            local_7 = false;
-        }
-        bool _e49 = local_7;
-        local_6 = !(_e49);
-    } else {
-        local_6 = true;
-    }
-    bool mirror = local_6;
-    return StudentTImplAlbedo {_e3, mirror ? 0.0 : _e13, (coordinate - _e3.start) / _e3.range, lowest};
-}
-
-inline float student_t_impl_view(
-    StudentTImplAlbedo a_5,
-    float mu
-) {
-    float sine = metal::sqrt(metal::max((1.0 - mu) * (1.0 + mu), 0.0));
-    float x_9 = mu / (mu + ((a_5.table.kappa * a_5.sigma) * sine));
-    float h = mu / (1.0 + sine);
-    float nu = a_5.table.spread * a_5.sigma;
-    float roots = (a_5.table.share * metal::sqrt(metal::sqrt(x_9))) + ((1.0 - a_5.table.share) * metal::sqrt(metal::sqrt(h)));
-    return ((a_5.table.weight * x_9) + (a_5.table.normal * (nu / (nu + sine)))) + (((1.0 - a_5.table.weight) - a_5.table.normal) * roots);
-}
-
-inline metal::float3 student_t_impl_mirror(
-    float mu_1
-) {
-    float k = 1.0 - mu_1;
-    float fourth = (k * k) * (k * k);
-    return metal::float3(0.0, fourth * k, (17.651384 * mu_1) * (fourth * (k * k)));
-}
-
 inline metal::float3 student_t_impl_moments_at(
-    StudentTImplAlbedo a_6,
+    StudentTImplAlbedo a_8,
     float mu_2,
     metal::texture2d<float, metal::access::sample> student_t_tables
 ) {
-    float _e3 = student_t_impl_view(a_6, a_6.lowest);
-    float _e4 = student_t_impl_view(a_6, mu_2);
-    float at_6 = (_e4 - _e3) / (1.0 - _e3);
-    StudentTImplSix _e17 = student_t_impl_six(a_6.coordinate * (a_6.table.sigmas - 1.0), a_6.table.sigmas);
-    StudentTImplSix _e25 = student_t_impl_six(at_6 * (a_6.table.views - 1.0), a_6.table.views);
-    uint row = 2u * student_t_impl_f2u32(a_6.table.views);
-    uint first_1 = (a_6.table.values + (_e17.start * row)) + (2u * _e25.start);
+    float _e3 = student_t_impl_view(a_8, a_8.lowest);
+    float _e4 = student_t_impl_view(a_8, mu_2);
+    float at_7 = (_e4 - _e3) / (1.0 - _e3);
+    StudentTImplSix _e17 = student_t_impl_six(a_8.coordinate * (a_8.table.sigmas - 1.0), a_8.table.sigmas);
+    StudentTImplSix _e25 = student_t_impl_six(at_7 * (a_8.table.views - 1.0), a_8.table.views);
+    uint row = 2u * student_t_impl_f2u32(a_8.table.views);
+    uint first_1 = (a_8.table.values + (_e17.start * row)) + (2u * _e25.start);
     metal::float3 _e45 = student_t_impl_node((first_1 + (2u * row)) + 4u, student_t_tables);
     metal::float3 _e46 = student_t_impl_row(first_1, _e25, _e45, student_t_tables);
     metal::float3 _e51 = student_t_impl_row(first_1 + row, _e25, _e45, student_t_tables);
@@ -855,29 +933,29 @@ inline metal::float3 student_t_impl_moments_at(
 }
 
 inline metal::float3 student_t_impl_moments(
-    StudentTImplAlbedo a_7,
+    StudentTImplAlbedo a_9,
     float cos_theta,
-    uint masking_4,
+    uint masking_6,
     metal::texture2d<float, metal::access::sample> student_t_tables
 ) {
     float power = 1.0;
     float more = 0.0;
     float nearer = 1.0;
     float _e3 = student_t_impl_unit(cos_theta);
-    if (!((a_7.sigma > 0.0))) {
+    if (!((a_9.sigma > 0.0))) {
         metal::float3 _e8 = student_t_impl_mirror(_e3);
         return _e8;
     }
-    metal::float3 _e11 = student_t_impl_moments_at(a_7, metal::max(_e3, a_7.lowest), student_t_tables);
-    if (!((_e3 < a_7.lowest))) {
+    metal::float3 _e11 = student_t_impl_moments_at(a_9, metal::max(_e3, a_9.lowest), student_t_tables);
+    if (!((_e3 < a_9.lowest))) {
         return _e11;
     }
     if (!((_e11.x < 0.0))) {
         metal::float3 _e19 = student_t_impl_mirror(_e3);
         return _e19;
     }
-    metal::float3 _e23 = student_t_impl_moments_at(a_7, 4.0 * a_7.lowest, student_t_tables);
-    if (masking_4 != STUDENT_T_UNCORRELATED) {
+    metal::float3 _e23 = student_t_impl_moments_at(a_9, 4.0 * a_9.lowest, student_t_tables);
+    if (masking_6 != STUDENT_T_UNCORRELATED) {
         float ratio = _e23.x / _e11.x;
         power = 0.0;
         if (ratio > 1.0) {
@@ -889,7 +967,7 @@ inline metal::float3 student_t_impl_moments(
     if (_e41 > 0.0) {
         if (_e3 > 0.0) {
             float _e48 = power;
-            float _e53 = student_t_impl_exp_growth(_e48 * metal::log(_e3 / a_7.lowest));
+            float _e53 = student_t_impl_exp_growth(_e48 * metal::log(_e3 / a_9.lowest));
             nearer = -(_e53);
         }
         float _e55 = nearer;
@@ -904,105 +982,271 @@ inline metal::float3 student_t_impl_moments(
     return metal::float3(_e69, limit.yz);
 }
 
-inline metal::float3 student_t_impl_averages(
-    StudentTImplAlbedo a_8,
-    metal::texture2d<float, metal::access::sample> student_t_tables
-) {
-    if (!((a_8.sigma > 0.0))) {
-        return metal::float3(0.0, 0.04761905, 0.14009036);
-    }
-    float count = a_8.table.average_sigmas;
-    StudentTImplSix _e15 = student_t_impl_six(a_8.coordinate * (count - 1.0), count);
-    metal::float3 _e24 = student_t_impl_row(a_8.table.averages + (2u * _e15.start), _e15, metal::float3(0.0), student_t_tables);
-    return metal::float3(metal::min(metal::exp(_e24.x), 1.0), _e24.yz);
-}
-
-inline metal::float3 student_t_impl_limit(
-    metal::float3 moments
-) {
-    float _e3 = student_t_impl_max(moments.y, 0.0);
-    float _e5 = student_t_impl_min(_e3, moments.x);
-    float _e9 = student_t_impl_unit(moments.z);
-    return metal::float3(moments.x - _e5, _e5, _e9);
-}
-
-inline float student_t_albedo(
-    uint shape_17,
-    metal::float2 sigma_16,
+inline float student_t_impl_lost(
+    StudentTImplAlbedo a_10,
     float cos_theta_1,
-    uint masking_5,
-    metal::texture2d<float, metal::access::sample> student_t_tables
-) {
-    StudentTImplAlbedo _e4 = student_t_impl_albedo_of(shape_17, sigma_16, masking_5, student_t_tables);
-    metal::float3 _e5 = student_t_impl_moments(_e4, cos_theta_1, masking_5, student_t_tables);
-    return 1.0 + _e5.x;
-}
-
-inline metal::float3 student_t_albedo_parts(
-    uint shape_18,
-    metal::float2 sigma_17,
-    float cos_theta_2,
-    uint masking_6,
-    metal::texture2d<float, metal::access::sample> student_t_tables
-) {
-    StudentTImplAlbedo _e4 = student_t_impl_albedo_of(shape_18, sigma_17, masking_6, student_t_tables);
-    metal::float3 _e5 = student_t_impl_moments(_e4, cos_theta_2, masking_6, student_t_tables);
-    metal::float3 _e11 = student_t_impl_limit(metal::float3(1.0 + _e5.x, _e5.yz));
-    return _e11;
-}
-
-inline float student_t_albedo_average(
-    uint shape_19,
-    metal::float2 sigma_18,
     uint masking_7,
     metal::texture2d<float, metal::access::sample> student_t_tables
 ) {
-    StudentTImplAlbedo _e3 = student_t_impl_albedo_of(shape_19, sigma_18, masking_7, student_t_tables);
-    metal::float3 _e4 = student_t_impl_averages(_e3, student_t_tables);
-    return 1.0 - _e4.x;
+    metal::float3 _e3 = student_t_impl_moments(a_10, cos_theta_1, masking_7, student_t_tables);
+    return -(_e3.x);
 }
 
-inline metal::float3 student_t_albedo_average_parts(
-    uint shape_20,
-    metal::float2 sigma_19,
+inline float student_t_lobe_albedo(
+    StudentTLobe lobe_20,
+    float cos_theta_2,
     uint masking_8,
     metal::texture2d<float, metal::access::sample> student_t_tables
 ) {
-    StudentTImplAlbedo _e3 = student_t_impl_albedo_of(shape_20, sigma_19, masking_8, student_t_tables);
-    metal::float3 _e4 = student_t_impl_averages(_e3, student_t_tables);
-    metal::float3 _e10 = student_t_impl_limit(metal::float3(1.0 - _e4.x, _e4.yz));
-    return _e10;
+    StudentTImplAlbedo _e3 = student_t_impl_albedo_of(lobe_20, masking_8, student_t_tables);
+    float _e4 = student_t_impl_lost(_e3, cos_theta_2, masking_8, student_t_tables);
+    return 1.0 - _e4;
 }
 
-inline float student_t_compensation(
-    uint shape_21,
-    metal::float2 sigma_20,
-    metal::float3 v_9,
-    metal::float3 l_2,
+inline metal::float3 student_t_lobe_albedo_parts(
+    StudentTLobe lobe_21,
+    float cos_theta_3,
     uint masking_9,
     metal::texture2d<float, metal::access::sample> student_t_tables
 ) {
-    bool local_8 = {};
-    if (v_9.z > 0.0) {
-        local_8 = l_2.z > 0.0;
+    StudentTImplAlbedo _e3 = student_t_impl_albedo_of(lobe_21, masking_9, student_t_tables);
+    metal::float3 _e4 = student_t_impl_moments(_e3, cos_theta_3, masking_9, student_t_tables);
+    metal::float3 _e10 = student_t_impl_limit(metal::float3(1.0 + _e4.x, _e4.yz));
+    return _e10;
+}
+
+inline metal::float3 student_t_impl_averages(
+    StudentTImplAlbedo a_11,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    if (!((a_11.sigma > 0.0))) {
+        metal::float3 _e5 = student_t_impl_mirror_average();
+        return _e5;
+    }
+    float count = a_11.table.average_sigmas;
+    StudentTImplSix _e12 = student_t_impl_six(a_11.coordinate * (count - 1.0), count);
+    metal::float3 _e21 = student_t_impl_row(a_11.table.averages + (2u * _e12.start), _e12, metal::float3(0.0), student_t_tables);
+    return metal::float3(metal::min(metal::exp(_e21.x), 1.0), _e21.yz);
+}
+
+inline float student_t_lobe_albedo_average(
+    StudentTLobe lobe_22,
+    uint masking_10,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    StudentTImplAlbedo _e2 = student_t_impl_albedo_of(lobe_22, masking_10, student_t_tables);
+    metal::float3 _e3 = student_t_impl_averages(_e2, student_t_tables);
+    return 1.0 - _e3.x;
+}
+
+inline metal::float3 student_t_lobe_albedo_average_parts(
+    StudentTLobe lobe_23,
+    uint masking_11,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    StudentTImplAlbedo _e2 = student_t_impl_albedo_of(lobe_23, masking_11, student_t_tables);
+    metal::float3 _e3 = student_t_impl_averages(_e2, student_t_tables);
+    metal::float3 _e9 = student_t_impl_limit(metal::float3(1.0 - _e3.x, _e3.yz));
+    return _e9;
+}
+
+inline float student_t_impl_kulla_conty(
+    float lost_v,
+    float lost_l,
+    float average
+) {
+    if (!((average > 0.000000000000000000000000000000000000011754944))) {
+        return 0.0;
+    }
+    return ((0.31830987 * lost_v) * lost_l) / average;
+}
+
+inline float student_t_lobe_compensation(
+    StudentTLobe lobe_24,
+    metal::float3 v_10,
+    metal::float3 l_3,
+    uint masking_12,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    bool local_9 = {};
+    if (v_10.z > 0.0) {
+        local_9 = l_3.z > 0.0;
     } else {
-        local_8 = false;
+        local_9 = false;
     }
-    bool _e14 = local_8;
-    if (!(_e14)) {
+    bool _e13 = local_9;
+    if (!(_e13)) {
         return 0.0;
     }
-    StudentTImplAlbedo _e17 = student_t_impl_albedo_of(shape_21, sigma_20, masking_9, student_t_tables);
-    metal::float3 _e18 = student_t_impl_averages(_e17, student_t_tables);
-    float lost = _e18.x;
-    if (!((lost > 0.000000000000000000000000000000000000011754944))) {
-        return 0.0;
-    }
-    metal::float3 _e25 = student_t_impl_moments(_e17, v_9.z, masking_9, student_t_tables);
-    float of_view = _e25.x;
-    metal::float3 _e28 = student_t_impl_moments(_e17, l_2.z, masking_9, student_t_tables);
-    float of_light = _e28.x;
-    return ((0.31830987 * of_view) * of_light) / lost;
+    StudentTImplAlbedo _e16 = student_t_impl_albedo_of(lobe_24, masking_12, student_t_tables);
+    float _e18 = student_t_impl_lost(_e16, v_10.z, masking_12, student_t_tables);
+    float _e20 = student_t_impl_lost(_e16, l_3.z, masking_12, student_t_tables);
+    metal::float3 _e21 = student_t_impl_averages(_e16, student_t_tables);
+    float _e23 = student_t_impl_kulla_conty(_e18, _e20, _e21.x);
+    return _e23;
+}
+
+inline float student_t_compensation_from(
+    float e_v,
+    float e_l,
+    float e_average
+) {
+    float _e9 = student_t_impl_kulla_conty(1.0 - e_v, 1.0 - e_l, 1.0 - e_average);
+    return _e9;
+}
+
+inline float student_t_d(
+    uint shape_2,
+    metal::float2 sigma_4,
+    metal::float3 m_7,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    StudentTLobe _e3 = student_t_lobe_of(shape_2, sigma_4, student_t_tables);
+    float _e4 = student_t_lobe_d(_e3, m_7);
+    return _e4;
+}
+
+inline float student_t_masking(
+    uint shape_3,
+    metal::float2 sigma_5,
+    metal::float3 w_5,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    StudentTLobe _e3 = student_t_lobe_of(shape_3, sigma_5, student_t_tables);
+    float _e4 = student_t_lobe_masking(_e3, w_5, student_t_tables);
+    return _e4;
+}
+
+inline float student_t_lambda(
+    uint shape_4,
+    metal::float2 sigma_6,
+    metal::float3 w_6,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    StudentTLobe _e3 = student_t_lobe_of(shape_4, sigma_6, student_t_tables);
+    float _e4 = student_t_lobe_lambda(_e3, w_6, student_t_tables);
+    return _e4;
+}
+
+inline float student_t_masking_shadowing(
+    uint shape_5,
+    metal::float2 sigma_7,
+    metal::float3 v_11,
+    metal::float3 l_4,
+    uint masking_13,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    StudentTLobe _e5 = student_t_lobe_of(shape_5, sigma_7, student_t_tables);
+    float _e6 = student_t_lobe_masking_shadowing(_e5, v_11, l_4, masking_13, student_t_tables);
+    return _e6;
+}
+
+inline float student_t_reflection_weight(
+    uint shape_6,
+    metal::float2 sigma_8,
+    metal::float3 v_12,
+    metal::float3 l_5,
+    uint masking_14,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    StudentTLobe _e5 = student_t_lobe_of(shape_6, sigma_8, student_t_tables);
+    float _e6 = student_t_lobe_reflection_weight(_e5, v_12, l_5, masking_14, student_t_tables);
+    return _e6;
+}
+
+inline metal::float3 student_t_sample_visible_normal(
+    uint shape_7,
+    metal::float2 sigma_9,
+    metal::float3 v_13,
+    metal::float2 u_5,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    StudentTLobe _e4 = student_t_lobe_of(shape_7, sigma_9, student_t_tables);
+    metal::float3 _e5 = student_t_lobe_sample_visible_normal(_e4, v_13, u_5, student_t_tables);
+    return _e5;
+}
+
+inline float student_t_visible_normal_pdf(
+    uint shape_8,
+    metal::float2 sigma_10,
+    metal::float3 v_14,
+    metal::float3 m_8,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    StudentTLobe _e4 = student_t_lobe_of(shape_8, sigma_10, student_t_tables);
+    float _e5 = student_t_lobe_visible_normal_pdf(_e4, v_14, m_8, student_t_tables);
+    return _e5;
+}
+
+inline float student_t_reflection_pdf(
+    uint shape_9,
+    metal::float2 sigma_11,
+    metal::float3 v_15,
+    metal::float3 m_9,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    StudentTLobe _e4 = student_t_lobe_of(shape_9, sigma_11, student_t_tables);
+    float _e5 = student_t_lobe_reflection_pdf(_e4, v_15, m_9, student_t_tables);
+    return _e5;
+}
+
+inline float student_t_albedo(
+    uint shape_10,
+    metal::float2 sigma_12,
+    float cos_theta_4,
+    uint masking_15,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    StudentTLobe _e4 = student_t_lobe_of(shape_10, sigma_12, student_t_tables);
+    float _e5 = student_t_lobe_albedo(_e4, cos_theta_4, masking_15, student_t_tables);
+    return _e5;
+}
+
+inline metal::float3 student_t_albedo_parts(
+    uint shape_11,
+    metal::float2 sigma_13,
+    float cos_theta_5,
+    uint masking_16,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    StudentTLobe _e4 = student_t_lobe_of(shape_11, sigma_13, student_t_tables);
+    metal::float3 _e5 = student_t_lobe_albedo_parts(_e4, cos_theta_5, masking_16, student_t_tables);
+    return _e5;
+}
+
+inline float student_t_albedo_average(
+    uint shape_12,
+    metal::float2 sigma_14,
+    uint masking_17,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    StudentTLobe _e3 = student_t_lobe_of(shape_12, sigma_14, student_t_tables);
+    float _e4 = student_t_lobe_albedo_average(_e3, masking_17, student_t_tables);
+    return _e4;
+}
+
+inline metal::float3 student_t_albedo_average_parts(
+    uint shape_13,
+    metal::float2 sigma_15,
+    uint masking_18,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    StudentTLobe _e3 = student_t_lobe_of(shape_13, sigma_15, student_t_tables);
+    metal::float3 _e4 = student_t_lobe_albedo_average_parts(_e3, masking_18, student_t_tables);
+    return _e4;
+}
+
+inline float student_t_compensation(
+    uint shape_14,
+    metal::float2 sigma_16,
+    metal::float3 v_16,
+    metal::float3 l_6,
+    uint masking_19,
+    metal::texture2d<float, metal::access::sample> student_t_tables
+) {
+    StudentTLobe _e5 = student_t_lobe_of(shape_14, sigma_16, student_t_tables);
+    float _e6 = student_t_lobe_compensation(_e5, v_16, l_6, masking_19, student_t_tables);
+    return _e6;
 }
 
 #endif
