@@ -159,9 +159,9 @@ StudentTLobe student_t_lobe_at(float gamma, vec2 sigma_1) {
     float _e26 = student_t_impl_min(_e25, _e23);
     float less = (_e26 - 1.0);
     float twice = ((2.0 * _e26) - 3.0);
-    float s = (1.0 / less);
+    float s_1 = (1.0 / less);
     float exponent = (1.0 / twice);
-    float r = (twice * s);
+    float r = (twice * s_1);
     float _e40 = student_t_impl_float((part + 14u));
     float _e44 = student_t_impl_float((part + 15u));
     float _e47 = student_t_impl_max(((_e40 - r) * _e44), 0.0);
@@ -188,7 +188,7 @@ StudentTLobe student_t_lobe_at(float gamma, vec2 sigma_1) {
         local_1 = false;
     }
     bool _e100 = local_1;
-    float _e103 = student_t_impl_max(s, 9.094947e-13);
+    float _e103 = student_t_impl_max(s_1, 9.094947e-13);
     float _e105 = student_t_impl_min(less, 1099511600000.0);
     float _e112 = student_t_impl_float((part + 2u));
     uint _e118 = student_t_impl_word((part + 3u));
@@ -205,7 +205,7 @@ StudentTLobe student_t_lobe_at(float gamma, vec2 sigma_1) {
     StudentTImplWindow _e152 = student_t_impl_window(between_1, 0u, x_9);
     StudentTImplWindow _e154 = student_t_impl_window(between_1, 1u, x_9);
     StudentTImplWindow _e156 = student_t_impl_window(between_1, 2u, x_9);
-    return StudentTLobe(vec2(_e87, _e89), _e26, !(_e100), 0.0, s, _e103, (0.5 - (0.5 * _e105)), (_e112 * (less * exponent)), exponent, sqrt(s), float(_e118), _e122, _e125, _e128, _e131, _e134, _e137, float(_e140), _e144, _e147, _e150, part, _e152, _e154, _e156);
+    return StudentTLobe(vec2(_e87, _e89), _e26, !(_e100), 0.0, s_1, _e103, (0.5 - (0.5 * _e105)), (_e112 * (less * exponent)), exponent, sqrt(s_1), float(_e118), _e122, _e125, _e128, _e131, _e134, _e137, float(_e140), _e144, _e147, _e150, part, _e152, _e154, _e156);
 }
 
 vec2 student_t_impl_sum(uint at_5, uint step_, vec4 w) {
@@ -369,7 +369,7 @@ StudentTImplAlbedo student_t_impl_albedo_of(StudentTLobe lobe_5, uint masking) {
     float _e39 = student_t_impl_octaves(_e29);
     float shape = sqrt(sqrt((_e38 / (_e38 + 3.0))));
     float _e49 = student_t_impl_octaves((1.0 + (60.0 * _e29)));
-    float sigma_4 = ((_e49 + (0.2 * _e39)) + _e29);
+    float sigma_7 = ((_e49 + (0.2 * _e39)) + _e29);
     if (!(lobe_5.is_mirror)) {
         uint _e60 = student_t_impl_word((t + 22u));
         local_2 = (_e60 == 0u);
@@ -378,7 +378,7 @@ StudentTImplAlbedo student_t_impl_albedo_of(StudentTLobe lobe_5, uint masking) {
     }
     bool mirror = local_2;
     StudentTImplThree _e78 = student_t_impl_three(((shape - _e12.x) * _e12.z));
-    StudentTImplThree _e83 = student_t_impl_three(((sigma_4 - _e12.y) * _e12.w));
+    StudentTImplThree _e83 = student_t_impl_three(((sigma_7 - _e12.y) * _e12.w));
     return StudentTImplAlbedo(t, (mirror ? 0.0 : _e29), _e38, (((_e39 + (2.0 * _e29)) - averages.x) * averages.y), _e78, _e83);
 }
 
@@ -769,16 +769,16 @@ vec2 student_t_lobe_eval_pdf(StudentTLobe lobe_13, vec3 v_3, vec3 l_2, uint mask
 
 bool student_t_effectively_smooth(StudentTLobe lobe_14) {
     bool local_9 = false;
-    float sigma_5 = max(lobe_14.sigma.x, lobe_14.sigma.y);
-    if (!(((0.56 * sigma_5) < 0.001))) {
+    float sigma_8 = max(lobe_14.sigma.x, lobe_14.sigma.y);
+    if (!(((0.56 * sigma_8) < 0.001))) {
         return false;
     }
     StudentTImplDirection level = StudentTImplDirection(vec2(0.0), 1.0, 1.0, 0.0, 1.0);
     float _e19 = student_t_impl_inverse_area(lobe_14, level);
     float mean = (2.0 / _e19);
-    float rho_1 = (0.99995 * sigma_5);
+    float rho_1 = (0.99995 * sigma_8);
     StudentTImplDirection grazing = StudentTImplDirection(vec2(0.0), 1.0, rho_1, 0.01, (rho_1 * rho_1));
-    if (((sigma_5 * mean) < 0.001)) {
+    if (((sigma_8 * mean) < 0.001)) {
         float _e35 = student_t_impl_inverse_area(lobe_14, grazing);
         local_9 = ((1.0 - (0.01 * _e35)) <= 0.0025);
     } else {
@@ -973,6 +973,50 @@ float student_t_lobe_reflection_pdf(StudentTLobe lobe_20, vec3 v_9, vec3 m_6) {
     return _e14;
 }
 
+float student_t_impl_tail(float gamma_1) {
+    float _e2 = student_t_impl_max(gamma_1, 1.501);
+    float _e4 = student_t_impl_min(_e2, 1000000000000.0);
+    return (1.0 / (_e4 - 1.0));
+}
+
+float student_t_impl_facing_pdf(float slope2_, float sigma_4, float s) {
+    float x_14 = ((slope2_ / sigma_4) / sigma_4);
+    float _e11 = student_t_impl_log_growth((s * x_14));
+    float power_1 = exp((-((1.0 + (1.0 / s))) * _e11));
+    float scale_1 = ((1.0 + slope2_) / sigma_4);
+    float _e18 = student_t_impl_product((power_1 * scale_1), scale_1);
+    float _e20 = student_t_impl_product(_e18, 0.07957747);
+    return _e20;
+}
+
+vec4 student_t_prefilter_light(vec2 u_5, float sigma_5, float gamma_2) {
+    float _e3 = student_t_impl_tail(gamma_2);
+    float _e4 = student_t_impl_sigma(sigma_5);
+    float _e6 = student_t_impl_unit(u_5.x);
+    float _e8 = student_t_impl_min(_e6, 0.99999994);
+    float _e11 = student_t_impl_log_growth(-(_e8));
+    float _e13 = student_t_impl_exp_growth((-(_e3) * _e11));
+    float slope_2 = (_e4 * sqrt((_e13 / _e3)));
+    float slope_2_ = (slope_2 * slope_2);
+    float secant_2_ = (1.0 + slope_2_);
+    float sine_1 = ((2.0 * slope_2) / secant_2_);
+    float _e24 = student_t_impl_unit(u_5.y);
+    vec2 _e25 = student_t_impl_turn(_e24);
+    float _e26 = student_t_impl_facing_pdf(slope_2_, _e4, _e3);
+    return vec4((sine_1 * _e25), ((1.0 - slope_2_) / secant_2_), _e26);
+}
+
+float student_t_prefilter_pdf(float cos_theta_2, float sigma_6, float gamma_3) {
+    float _e3 = student_t_impl_unit(cos_theta_2);
+    if (!((cos_theta_2 > 0.0))) {
+        return 0.0;
+    }
+    float _e8 = student_t_impl_tail(gamma_3);
+    float _e14 = student_t_impl_sigma(sigma_6);
+    float _e15 = student_t_impl_facing_pdf(((1.0 - _e3) / (1.0 + _e3)), _e14, _e8);
+    return _e15;
+}
+
 vec3 student_t_impl_limit(vec3 moments) {
     float _e3 = student_t_impl_max(moments.y, 0.0);
     float _e5 = student_t_impl_min(_e3, moments.x);
@@ -980,15 +1024,15 @@ vec3 student_t_impl_limit(vec3 moments) {
     return vec3((moments.x - _e5), _e5, _e9);
 }
 
-float student_t_lobe_albedo(StudentTLobe lobe_21, float cos_theta_2, uint masking_7) {
+float student_t_lobe_albedo(StudentTLobe lobe_21, float cos_theta_3, uint masking_7) {
     StudentTImplAlbedo _e3 = student_t_impl_albedo_of(lobe_21, masking_7);
-    float _e4 = student_t_impl_lost(_e3, cos_theta_2, masking_7);
+    float _e4 = student_t_impl_lost(_e3, cos_theta_3, masking_7);
     return (1.0 - _e4);
 }
 
-vec3 student_t_lobe_albedo_parts(StudentTLobe lobe_22, float cos_theta_3, uint masking_8) {
+vec3 student_t_lobe_albedo_parts(StudentTLobe lobe_22, float cos_theta_4, uint masking_8) {
     StudentTImplAlbedo _e3 = student_t_impl_albedo_of(lobe_22, masking_8);
-    vec3 _e4 = student_t_impl_moments(_e3, cos_theta_3, masking_8);
+    vec3 _e4 = student_t_impl_moments(_e3, cos_theta_4, masking_8);
     vec3 _e10 = student_t_impl_limit(vec3((1.0 + _e4.x), _e4.yz));
     return _e10;
 }

@@ -401,16 +401,16 @@ vec2 student_t_lobe_eval_pdf(StudentTLobe lobe_8, vec3 v_3, vec3 l_2, uint maski
 
 bool student_t_effectively_smooth(StudentTLobe lobe_9) {
     bool local_7 = false;
-    float sigma_17 = max(lobe_9.sigma.x, lobe_9.sigma.y);
-    if (!(((0.56 * sigma_17) < 0.001))) {
+    float sigma_20 = max(lobe_9.sigma.x, lobe_9.sigma.y);
+    if (!(((0.56 * sigma_20) < 0.001))) {
         return false;
     }
     StudentTImplDirection level = StudentTImplDirection(vec2(0.0), 1.0, 1.0, 0.0, 1.0);
     float _e19 = student_t_impl_inverse_area(lobe_9, level);
     float mean = (2.0 / _e19);
-    float rho_1 = (0.99995 * sigma_17);
+    float rho_1 = (0.99995 * sigma_20);
     StudentTImplDirection grazing = StudentTImplDirection(vec2(0.0), 1.0, rho_1, 0.01, (rho_1 * rho_1));
-    if (((sigma_17 * mean) < 0.001)) {
+    if (((sigma_20 * mean) < 0.001)) {
         float _e35 = student_t_impl_inverse_area(lobe_9, grazing);
         local_7 = ((1.0 - (0.01 * _e35)) <= 0.0025);
     } else {
@@ -639,6 +639,50 @@ float student_t_lobe_reflection_pdf(StudentTLobe lobe_18, vec3 v_9, vec3 m_6) {
     return _e14;
 }
 
+float student_t_impl_tail(float gamma) {
+    float _e2 = student_t_impl_max(gamma, 1.501);
+    float _e4 = student_t_impl_min(_e2, 1000000000000.0);
+    return (1.0 / (_e4 - 1.0));
+}
+
+float student_t_impl_facing_pdf(float slope2_, float sigma_4, float s) {
+    float x_9 = ((slope2_ / sigma_4) / sigma_4);
+    float _e11 = student_t_impl_log_growth((s * x_9));
+    float power_2 = exp((-((1.0 + (1.0 / s))) * _e11));
+    float scale_1 = ((1.0 + slope2_) / sigma_4);
+    float _e18 = student_t_impl_product((power_2 * scale_1), scale_1);
+    float _e20 = student_t_impl_product(_e18, 0.07957747);
+    return _e20;
+}
+
+vec4 student_t_prefilter_light(vec2 u_5, float sigma_5, float gamma_1) {
+    float _e3 = student_t_impl_tail(gamma_1);
+    float _e4 = student_t_impl_sigma(sigma_5);
+    float _e6 = student_t_impl_unit(u_5.x);
+    float _e8 = student_t_impl_min(_e6, 0.99999994);
+    float _e11 = student_t_impl_log_growth(-(_e8));
+    float _e13 = student_t_impl_exp_growth((-(_e3) * _e11));
+    float slope_2 = (_e4 * sqrt((_e13 / _e3)));
+    float slope_2_ = (slope_2 * slope_2);
+    float secant_2_ = (1.0 + slope_2_);
+    float sine = ((2.0 * slope_2) / secant_2_);
+    float _e24 = student_t_impl_unit(u_5.y);
+    vec2 _e25 = student_t_impl_turn(_e24);
+    float _e26 = student_t_impl_facing_pdf(slope_2_, _e4, _e3);
+    return vec4((sine * _e25), ((1.0 - slope_2_) / secant_2_), _e26);
+}
+
+float student_t_prefilter_pdf(float cos_theta, float sigma_6, float gamma_2) {
+    float _e3 = student_t_impl_unit(cos_theta);
+    if (!((cos_theta > 0.0))) {
+        return 0.0;
+    }
+    float _e8 = student_t_impl_tail(gamma_2);
+    float _e14 = student_t_impl_sigma(sigma_6);
+    float _e15 = student_t_impl_facing_pdf(((1.0 - _e3) / (1.0 + _e3)), _e14, _e8);
+    return _e15;
+}
+
 vec3 student_t_impl_mirror(float mu) {
     float k = (1.0 - mu);
     float fourth = ((k * k) * (k * k));
@@ -675,12 +719,12 @@ StudentTImplAlbedo student_t_impl_albedo_of(StudentTLobe lobe_19, uint masking_5
 }
 
 float student_t_impl_view(StudentTImplAlbedo a_7, float mu_1) {
-    float sine = sqrt(max(((1.0 - mu_1) * (1.0 + mu_1)), 0.0));
-    float x_9 = (mu_1 / (mu_1 + ((a_7.table.kappa * a_7.sigma) * sine)));
-    float h = (mu_1 / (1.0 + sine));
+    float sine_1 = sqrt(max(((1.0 - mu_1) * (1.0 + mu_1)), 0.0));
+    float x_10 = (mu_1 / (mu_1 + ((a_7.table.kappa * a_7.sigma) * sine_1)));
+    float h = (mu_1 / (1.0 + sine_1));
     float nu = (a_7.table.spread * a_7.sigma);
-    float roots = ((a_7.table.share * sqrt(sqrt(x_9))) + ((1.0 - a_7.table.share) * sqrt(sqrt(h))));
-    return (((a_7.table.weight * x_9) + (a_7.table.normal * (nu / (nu + sine)))) + (((1.0 - a_7.table.weight) - a_7.table.normal) * roots));
+    float roots = ((a_7.table.share * sqrt(sqrt(x_10))) + ((1.0 - a_7.table.share) * sqrt(sqrt(h))));
+    return (((a_7.table.weight * x_10) + (a_7.table.normal * (nu / (nu + sine_1)))) + (((1.0 - a_7.table.weight) - a_7.table.normal) * roots));
 }
 
 StudentTImplSix student_t_impl_six(float x_6, float n) {
@@ -737,11 +781,11 @@ vec3 student_t_impl_moments_at(StudentTImplAlbedo a_8, float mu_2) {
     return (vec3(_e93, moments_1.yz) + ((1.0 + _e93) * _e98));
 }
 
-vec3 student_t_impl_moments(StudentTImplAlbedo a_9, float cos_theta, uint masking_6) {
+vec3 student_t_impl_moments(StudentTImplAlbedo a_9, float cos_theta_1, uint masking_6) {
     float power = 1.0;
     float more = 0.0;
     float nearer = 1.0;
-    float _e3 = student_t_impl_unit(cos_theta);
+    float _e3 = student_t_impl_unit(cos_theta_1);
     if (!((a_9.sigma > 0.0))) {
         vec3 _e8 = student_t_impl_mirror(_e3);
         return _e8;
@@ -782,20 +826,20 @@ vec3 student_t_impl_moments(StudentTImplAlbedo a_9, float cos_theta, uint maskin
     return vec3(_e69, limit.yz);
 }
 
-float student_t_impl_lost(StudentTImplAlbedo a_10, float cos_theta_1, uint masking_7) {
-    vec3 _e3 = student_t_impl_moments(a_10, cos_theta_1, masking_7);
+float student_t_impl_lost(StudentTImplAlbedo a_10, float cos_theta_2, uint masking_7) {
+    vec3 _e3 = student_t_impl_moments(a_10, cos_theta_2, masking_7);
     return -(_e3.x);
 }
 
-float student_t_lobe_albedo(StudentTLobe lobe_20, float cos_theta_2, uint masking_8) {
+float student_t_lobe_albedo(StudentTLobe lobe_20, float cos_theta_3, uint masking_8) {
     StudentTImplAlbedo _e3 = student_t_impl_albedo_of(lobe_20, masking_8);
-    float _e4 = student_t_impl_lost(_e3, cos_theta_2, masking_8);
+    float _e4 = student_t_impl_lost(_e3, cos_theta_3, masking_8);
     return (1.0 - _e4);
 }
 
-vec3 student_t_lobe_albedo_parts(StudentTLobe lobe_21, float cos_theta_3, uint masking_9) {
+vec3 student_t_lobe_albedo_parts(StudentTLobe lobe_21, float cos_theta_4, uint masking_9) {
     StudentTImplAlbedo _e3 = student_t_impl_albedo_of(lobe_21, masking_9);
-    vec3 _e4 = student_t_impl_moments(_e3, cos_theta_3, masking_9);
+    vec3 _e4 = student_t_impl_moments(_e3, cos_theta_4, masking_9);
     vec3 _e10 = student_t_impl_limit(vec3((1.0 + _e4.x), _e4.yz));
     return _e10;
 }
@@ -855,80 +899,80 @@ float student_t_compensation_from(float e_v, float e_l, float e_average) {
     return _e9;
 }
 
-float student_t_d(uint shape_2, vec2 sigma_4, vec3 m_7) {
-    StudentTLobe _e3 = student_t_lobe_of(shape_2, sigma_4);
+float student_t_d(uint shape_2, vec2 sigma_7, vec3 m_7) {
+    StudentTLobe _e3 = student_t_lobe_of(shape_2, sigma_7);
     float _e4 = student_t_lobe_d(_e3, m_7);
     return _e4;
 }
 
-float student_t_masking(uint shape_3, vec2 sigma_5, vec3 w_5) {
-    StudentTLobe _e3 = student_t_lobe_of(shape_3, sigma_5);
+float student_t_masking(uint shape_3, vec2 sigma_8, vec3 w_5) {
+    StudentTLobe _e3 = student_t_lobe_of(shape_3, sigma_8);
     float _e4 = student_t_lobe_masking(_e3, w_5);
     return _e4;
 }
 
-float student_t_lambda(uint shape_4, vec2 sigma_6, vec3 w_6) {
-    StudentTLobe _e3 = student_t_lobe_of(shape_4, sigma_6);
+float student_t_lambda(uint shape_4, vec2 sigma_9, vec3 w_6) {
+    StudentTLobe _e3 = student_t_lobe_of(shape_4, sigma_9);
     float _e4 = student_t_lobe_lambda(_e3, w_6);
     return _e4;
 }
 
-float student_t_masking_shadowing(uint shape_5, vec2 sigma_7, vec3 v_11, vec3 l_4, uint masking_13) {
-    StudentTLobe _e5 = student_t_lobe_of(shape_5, sigma_7);
+float student_t_masking_shadowing(uint shape_5, vec2 sigma_10, vec3 v_11, vec3 l_4, uint masking_13) {
+    StudentTLobe _e5 = student_t_lobe_of(shape_5, sigma_10);
     float _e6 = student_t_lobe_masking_shadowing(_e5, v_11, l_4, masking_13);
     return _e6;
 }
 
-float student_t_reflection_weight(uint shape_6, vec2 sigma_8, vec3 v_12, vec3 l_5, uint masking_14) {
-    StudentTLobe _e5 = student_t_lobe_of(shape_6, sigma_8);
+float student_t_reflection_weight(uint shape_6, vec2 sigma_11, vec3 v_12, vec3 l_5, uint masking_14) {
+    StudentTLobe _e5 = student_t_lobe_of(shape_6, sigma_11);
     float _e6 = student_t_lobe_reflection_weight(_e5, v_12, l_5, masking_14);
     return _e6;
 }
 
-vec3 student_t_sample_visible_normal(uint shape_7, vec2 sigma_9, vec3 v_13, vec2 u_5) {
-    StudentTLobe _e4 = student_t_lobe_of(shape_7, sigma_9);
-    vec3 _e5 = student_t_lobe_sample_visible_normal(_e4, v_13, u_5);
+vec3 student_t_sample_visible_normal(uint shape_7, vec2 sigma_12, vec3 v_13, vec2 u_6) {
+    StudentTLobe _e4 = student_t_lobe_of(shape_7, sigma_12);
+    vec3 _e5 = student_t_lobe_sample_visible_normal(_e4, v_13, u_6);
     return _e5;
 }
 
-float student_t_visible_normal_pdf(uint shape_8, vec2 sigma_10, vec3 v_14, vec3 m_8) {
-    StudentTLobe _e4 = student_t_lobe_of(shape_8, sigma_10);
+float student_t_visible_normal_pdf(uint shape_8, vec2 sigma_13, vec3 v_14, vec3 m_8) {
+    StudentTLobe _e4 = student_t_lobe_of(shape_8, sigma_13);
     float _e5 = student_t_lobe_visible_normal_pdf(_e4, v_14, m_8);
     return _e5;
 }
 
-float student_t_reflection_pdf(uint shape_9, vec2 sigma_11, vec3 v_15, vec3 m_9) {
-    StudentTLobe _e4 = student_t_lobe_of(shape_9, sigma_11);
+float student_t_reflection_pdf(uint shape_9, vec2 sigma_14, vec3 v_15, vec3 m_9) {
+    StudentTLobe _e4 = student_t_lobe_of(shape_9, sigma_14);
     float _e5 = student_t_lobe_reflection_pdf(_e4, v_15, m_9);
     return _e5;
 }
 
-float student_t_albedo(uint shape_10, vec2 sigma_12, float cos_theta_4, uint masking_15) {
-    StudentTLobe _e4 = student_t_lobe_of(shape_10, sigma_12);
-    float _e5 = student_t_lobe_albedo(_e4, cos_theta_4, masking_15);
+float student_t_albedo(uint shape_10, vec2 sigma_15, float cos_theta_5, uint masking_15) {
+    StudentTLobe _e4 = student_t_lobe_of(shape_10, sigma_15);
+    float _e5 = student_t_lobe_albedo(_e4, cos_theta_5, masking_15);
     return _e5;
 }
 
-vec3 student_t_albedo_parts(uint shape_11, vec2 sigma_13, float cos_theta_5, uint masking_16) {
-    StudentTLobe _e4 = student_t_lobe_of(shape_11, sigma_13);
-    vec3 _e5 = student_t_lobe_albedo_parts(_e4, cos_theta_5, masking_16);
+vec3 student_t_albedo_parts(uint shape_11, vec2 sigma_16, float cos_theta_6, uint masking_16) {
+    StudentTLobe _e4 = student_t_lobe_of(shape_11, sigma_16);
+    vec3 _e5 = student_t_lobe_albedo_parts(_e4, cos_theta_6, masking_16);
     return _e5;
 }
 
-float student_t_albedo_average(uint shape_12, vec2 sigma_14, uint masking_17) {
-    StudentTLobe _e3 = student_t_lobe_of(shape_12, sigma_14);
+float student_t_albedo_average(uint shape_12, vec2 sigma_17, uint masking_17) {
+    StudentTLobe _e3 = student_t_lobe_of(shape_12, sigma_17);
     float _e4 = student_t_lobe_albedo_average(_e3, masking_17);
     return _e4;
 }
 
-vec3 student_t_albedo_average_parts(uint shape_13, vec2 sigma_15, uint masking_18) {
-    StudentTLobe _e3 = student_t_lobe_of(shape_13, sigma_15);
+vec3 student_t_albedo_average_parts(uint shape_13, vec2 sigma_18, uint masking_18) {
+    StudentTLobe _e3 = student_t_lobe_of(shape_13, sigma_18);
     vec3 _e4 = student_t_lobe_albedo_average_parts(_e3, masking_18);
     return _e4;
 }
 
-float student_t_compensation(uint shape_14, vec2 sigma_16, vec3 v_16, vec3 l_6, uint masking_19) {
-    StudentTLobe _e5 = student_t_lobe_of(shape_14, sigma_16);
+float student_t_compensation(uint shape_14, vec2 sigma_19, vec3 v_16, vec3 l_6, uint masking_19) {
+    StudentTLobe _e5 = student_t_lobe_of(shape_14, sigma_19);
     float _e6 = student_t_lobe_compensation(_e5, v_16, l_6, masking_19);
     return _e6;
 }
