@@ -56,7 +56,8 @@ pub(super) fn samples(shapes: usize, views: usize) -> Samples {
     samples
 }
 
-/// A plain polynomial: powers to the fourth of q = z/(z + 1/(2−s)) and s, at its own places.
+/// A plain polynomial: powers to the fourth of q = z/(z + 1.3/(2−s)) and s, at its own places. The
+/// factor is the best of a few that were tried.
 pub(super) fn plain(samples: &Samples) -> (Terms, Samples) {
     let all = |q: u8| (0..5).map(move |s| [q, s, 0, 0]);
     let terms = Terms { kept: (0..5).flat_map(all).collect(), lost: Vec::new() };
@@ -66,7 +67,7 @@ pub(super) fn plain(samples: &Samples) -> (Terms, Samples) {
 
 /// q and s.
 pub(super) fn plain_place(z: f64, s: f64) -> [f64; 4] {
-    [z / (z + 1.0 / (2.0 - s)), s, 0.0, 0.0]
+    [z / (z + 1.3 / (2.0 - s)), s, 0.0, 0.0]
 }
 
 /// Parts of the domain, by name: γ, and the unit cotangent z, small at grazing.
