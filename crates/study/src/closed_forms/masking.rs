@@ -27,8 +27,8 @@ fn place(z: f64, s: f64) -> [f64; 4] {
     [z / (1.0 + z), 1.0 / (1.0 + z), s, 0.0]
 }
 
-/// All terms of a degree with s up to its cube; no kept one without c, and no lost one that is
-/// all c beyond s², so that G1 is 0 at the horizon.
+/// All terms of a degree that a search begins with, s up to its cube. None that is kept is without
+/// c, so that G1 is 0 at the horizon.
 pub(super) fn terms(degree: u8) -> Terms {
     let all = |c: u8| (0..4).map(move |s| [c, degree - c, s, 0]);
     let kept = (1..=degree).flat_map(all).collect();

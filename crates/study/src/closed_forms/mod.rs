@@ -3,8 +3,8 @@
 //!
 //! `cargo run --release -p microfacet-study -- closed_forms` prints the tables of "Without tables"
 //! in `docs/shaders.md`, and the lines that `closed.wgsl` and `closed.h` of the crate
-//! `microfacet-export` have of the forms chosen. `closed_forms search` repeats the search for the
-//! terms of all forms, which takes some minutes.
+//! `microfacet-export` have of the forms chosen. `closed_forms search` searches for terms of forms,
+//! which takes some minutes.
 //!
 //! A number is a coefficient: one of each quotient is 1 or −1, and powers are whole. The rivals are
 //! eq. 22–23 of Ribardière et al. 2017 (<https://doi.org/10.1111/cgf.13137>), which have 31 numbers,
@@ -30,7 +30,7 @@ use measure::Largest;
 use search::{Effort, search};
 use share::{Samples, Terms};
 
-/// How often the weights follow the errors; more does not help.
+/// How often the weights follow the errors, of G1 and of E.
 const ROUNDS: [usize; 2] = [1000, 300];
 
 /// The best fit of these terms of G1.
