@@ -6,6 +6,7 @@
 
 pub mod albedo_convergence;
 pub mod albedo_design;
+pub mod closed_forms;
 pub mod dielectric_design;
 pub mod dielectric_views;
 pub mod ellipsoid_cost;
@@ -50,13 +51,18 @@ const fn study(name: &'static str, what: &'static str, run: fn(&[String]) -> Out
 }
 
 /// All studies, by name.
-pub const STUDIES: [Study; 19] = [
+pub const STUDIES: [Study; 20] = [
     study(
         "albedo_convergence",
         "error against time of one directional albedo",
         albedo_convergence::run,
     ),
     study("albedo_design", "coordinates of the view for albedos", albedo_design::run),
+    study(
+        "closed_forms",
+        "masking and albedos without tables: forms, their sizes and errors",
+        closed_forms::run,
+    ),
     study(
         "dielectric_design",
         "tables of albedos of dielectrics: errors and sizes [ROW]",
