@@ -2,7 +2,7 @@
 values against the reference, derivatives against differences and against the model, and modules
 that lost a structure's derivatives, which must be found.
 
-    check.py EXPORT REFERENCE.CSV MICROFACET-BAKE
+    check.py EXPORT EXPORT-OF-FAMILY REFERENCE.CSV MICROFACET-BAKE
 """
 
 import csv
@@ -129,11 +129,13 @@ def mutants(export):
         print(f"without those of {name}: {wrong[0]}")
 
 
-def main(export, reference, command):
+def main(export, family, reference, command):
     module = Module(export)
     values(module, reference)
-    wrong = derivatives.check(module)
-    assert not wrong, wrong
+    for one in (module, Module(family, is_family=True)):
+        print("family, derivatives by gamma too" if one.is_family else "single shapes")
+        wrong = derivatives.check(one)
+        assert not wrong, wrong
     model(module, command)
     mutants(export)
 

@@ -40,17 +40,21 @@ WRITTEN = slangpy.BufferUsage.unordered_access
 
 
 class Module:
-    """The kernel of `functions.slang` with the tables of an export."""
+    """The kernel of `functions.slang` with the tables of an export, of shapes or of the family."""
 
-    def __init__(self, export, module=None):
+    def __init__(self, export, module=None, is_family=False):
         """`module` is the folder of another student_t.slang than that of the export."""
         folders = [pathlib.Path(module or export), HERE]
         self.device = slangpy.create_device(slangpy.DeviceType.cpu, include_paths=folders)
-        program = self.device.load_program("functions", ["derivatives"])
+        self.is_family = is_family
+        program = self.device.load_program("family" if is_family else "shapes", ["derivatives"])
         self.kernel = self.device.create_compute_kernel(program)
-        self.tables = self.buffer(np.fromfile(pathlib.Path(export, "student_t.bin"), np.uint32), 4)
-        shapes = json.loads(pathlib.Path(export, "student_t.json").read_text())["shapes"]
-        self.offsets = {float(gamma): shape["offset"] for gamma, shape in shapes.items()}
+        name = "student_t_family" if is_family else "student_t"
+        self.tables = self.buffer(np.fromfile(pathlib.Path(export, f"{name}.bin"), np.uint32), 4)
+        self.offsets = {}
+        if not is_family:
+            shapes = json.loads(pathlib.Path(export, f"{name}.json").read_text())["shapes"]
+            self.offsets = {float(gamma): shape["offset"] for gamma, shape in shapes.items()}
 
     def buffer(self, data, size):
         return self.device.create_buffer(usage=READ, struct_size=size, data=data.reshape(-1))
@@ -60,7 +64,7 @@ class Module:
         count = len(points)
         queries = np.empty((count, 3), np.uint32)
         queries[:, 0] = FUNCTIONS.index(function)
-        queries[:, 1] = [self.offsets[shape] for shape in shapes]
+        queries[:, 1] = 0 if self.is_family else [self.offsets[shape] for shape in shapes]
         queries[:, 2] = masking
         size = 4 * (COLUMNS + 1)
         answers = self.device.create_buffer(

@@ -13,7 +13,7 @@ use microfacet_sampler::port::interface_tables;
 use microfacet_tables::SIGMA_MAX;
 
 use crate::cli::words::distinct;
-use crate::cli::{Result, anyhow, ensure, note, tables, values};
+use crate::cli::{Result, anyhow, note, tables, values};
 
 /// Where tables come from and files go to.
 #[derive(clap::Args)]
@@ -110,10 +110,6 @@ pub(super) fn shader(language: Language, args: &ShaderArgs) -> Result<()> {
     let (group, import_path) = (args.group.clone(), args.import_path.clone());
     let host = Host { group, binding: args.binding, import_path };
     host.check(language).map_err(|why| anyhow!(why))?;
-    ensure!(
-        !(args.family && language == Language::Slang),
-        "Slang has single shapes only: name them with --gamma instead of --family"
-    );
     let set = tables(args.ends.tables.as_deref())?;
     if args.family {
         let family = Family::bind(&set, !args.no_albedo)?;

@@ -112,6 +112,9 @@ impl Language {
         };
         if kind == Kind::Family {
             replace("student_t.", "student_t_family.");
+            if self == Self::Slang {
+                replace("import student_t;", "import student_t_family;");
+            }
             replace("student_t_lobe_of", "student_t_lobe_at");
             let uint = match self {
                 Self::Wgsl | Self::SpirV => ["shape: u32,  ", "gamma: f32,  "],

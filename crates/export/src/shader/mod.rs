@@ -83,7 +83,7 @@ fn text_files(
     let sample = language.sample(storage, kind);
     let [of_module, of_sample] = language.extensions();
     let name = format!("{}.{of_module}", kind.name());
-    let slang = (language == Language::Slang).then(|| slang::module(storage));
+    let slang = (language == Language::Slang).then(|| slang::module(storage, kind));
     let text = slang.as_deref().unwrap_or(module);
     let translation = language.translation(storage, kind).unwrap_or(text.as_bytes());
     let contents = match language {

@@ -428,7 +428,7 @@ inline float student_t_impl_octaves(
     float x_1
 ) {
     uint bits = as_type<uint>(x_1);
-    float m_7 = as_type<float>((bits & 8388607u) | 1065353216u) - 1.0;
+    float m_7 = (x_1 * as_type<float>((254u - (bits >> 23u)) << 23u)) - 1.0;
     return (static_cast<float>(bits >> 23u) - 127.0) + ((m_7 * ((m_7 * (m_7 - 4.0)) + 10.0)) * 0.14285715);
 }
 

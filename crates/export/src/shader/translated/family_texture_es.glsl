@@ -331,7 +331,7 @@ vec2 student_t_impl_share_at(StudentTLobe lobe_4, StudentTImplPlace place_4) {
 
 float student_t_impl_octaves(float x_1) {
     uint bits = floatBitsToUint(x_1);
-    float m_7 = (uintBitsToFloat(((bits & 8388607u) | 1065353216u)) - 1.0);
+    float m_7 = ((x_1 * uintBitsToFloat(((254u - (bits >> 23u)) << 23u))) - 1.0);
     return ((float((bits >> 23u)) - 127.0) + ((m_7 * ((m_7 * (m_7 - 4.0)) + 10.0)) * 0.14285715));
 }
 
