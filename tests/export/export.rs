@@ -165,7 +165,7 @@ fn other_sets_are_exported_with_what_they_lack() {
 fn bad_requests_are_refused_with_a_remedy_and_write_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    let cases: [(&[&str], &[&str]); 15] = [
+    let cases: [(&[&str], &[&str]); 16] = [
         (&["wgsl", "--gamma", "3", "--tables", "nowhere"], &["nowhere", "no such file", "bake"]),
         (&["cobol", "--gamma", "3"], &["cobol", "they are c, wgsl, glsl, glsl-es, hlsl"]),
         (&["c", "--gamma", "3", "--textures"], &["--textures"]),
@@ -173,6 +173,7 @@ fn bad_requests_are_refused_with_a_remedy_and_write_nothing() {
         (&["wgsl", "--gamma", "3", "--group", "two"], &["'two'", "must be", "#{MATERIAL_BIND"]),
         (&["glsl-es", "--gamma", "3", "--binding", "2"], &["uniform student_t_tables"]),
         (&["msl", "--gamma", "3", "--group", "2"], &["argument of its functions"]),
+        (&["hlsl", "--gamma", "3", "--argument"], &["leave out --argument"]),
         (&["hlsl", "--gamma", "3", "--import-path", "a"], &["leave out --import-path"]),
         (&["wgsl", "--gamma", "3", "--import-path", "a b"], &["'a b'", "must be names"]),
         (&["wgsl", "--gamma", "1.5001"], &["1.5001", "below 1.501", "raise"]),
@@ -342,6 +343,26 @@ fn shaders_have_tables_where_the_host_says() {
     // OpenGL has no sets.
     export("glsl", "opengl", &["--binding", "3", "--textures"]);
     assert!(text("opengl/student_t.glsl").contains("STUDENT_T_BINDING layout(binding = 3)\n"));
+    // As an argument the texture is the program's.
+    for (language, files, tables) in [
+        ("wgsl", ["student_t.wgsl", "student_t_sample.wgsl"], ": texture_2d<f32>"),
+        ("glsl", ["student_t.glsl", "student_t_sample.comp"], "sampler2D "),
+        ("glsl-es", ["student_t.glsl", "student_t_sample.frag"], "highp sampler2D "),
+    ] {
+        let out = format!("{language}-argument");
+        export(language, &out, &["--argument"]);
+        let [module, sample] = files.map(|name| text(&format!("{out}/{name}")));
+        let parameter = match language {
+            "wgsl" => format!(", student_t_tables{tables})"),
+            _ => format!(", {tables}student_t_tables)"),
+        };
+        let maker = module
+            .lines()
+            .find(|line| line.contains("student_t_lobe_of(") && !line.starts_with("//"));
+        assert!(maker.unwrap().contains(&parameter), "{module}");
+        assert!(!module.contains("@group") && !module.contains("\nuniform"), "{module}");
+        assert!(sample.contains("sigma, student_t_tables);"), "{sample}");
+    }
     // The host's own precision is left as it is.
     export("glsl-es", "es", &[]);
     assert!(!text("es/student_t.glsl").lines().any(|line| line.starts_with("precision")));

@@ -55,7 +55,9 @@ fn main() -> ExitCode {
     let mut lookups = Lookups::new(&gpu, &buffers, &textures);
     let mut good = agree(&mut lookups, &LIMITS, &gammas, points, reference);
     good &= family::agrees(&gpu, &families, points / 4);
-    good &= sample::runs(&gpu, &buffers);
+    let argument = read("wgsl-argument", "student_t");
+    good &= sample::runs(&gpu, &buffers, gpu.buffer(&buffers.tables));
+    good &= sample::runs(&gpu, &argument, gpu.texture(&argument.tables));
     good &= lut::lines_are_valid();
     good &= lut::agree(&gpu, &folder.join("lut"));
     good &= sphere::agrees(&gpu, &buffers, Path::new(picture));

@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use microfacet_sampler::{Masking, MicrofacetDistribution, Tables};
 
-use crate::device::Gpu;
+use crate::device::{Bound, Gpu};
 use crate::export::Export;
 
 #[repr(C)]
@@ -30,7 +30,7 @@ struct Answer {
 }
 
 /// Runs the program at a few views of each shape, in one call; returns whether the crate agrees.
-pub fn runs(gpu: &Gpu, export: &Export) -> bool {
+pub fn runs(gpu: &Gpu, export: &Export, tables_of_export: Bound) -> bool {
     let tables = Tables::embedded();
     let (sigma, gammas) = ([0.2_f32, 0.6], [1.65, 3.0]);
     let query = |i: usize| {
@@ -40,7 +40,7 @@ pub fn runs(gpu: &Gpu, export: &Export) -> bool {
     };
     let queries: Vec<Query> = (0..64).map(query).collect();
     let wgsl = format!("{}{}", export.module, export.sample);
-    let program = gpu.program(&wgsl, "reflect_views", gpu.buffer(&export.tables));
+    let program = gpu.program(&wgsl, "reflect_views", tables_of_export);
     let size = size_of::<Answer>() * queries.len();
     let bytes = gpu.run(&program, bytemuck::cast_slice(&queries), None, size, 1);
     let answers: Vec<Answer> = bytemuck::pod_collect_to_vec(&bytes);

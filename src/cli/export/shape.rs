@@ -86,6 +86,10 @@ pub(super) struct ShaderArgs {
     /// use the two after it.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::count::<u16>(0..=65533))]
     binding: u16,
+    /// Have functions of WGSL and GLSL take their tables, a texture, as the last argument, as those
+    /// of Metal do: for programs that bind textures by themselves.
+    #[arg(long)]
+    argument: bool,
     /// Path by which naga_oil, as in Bevy, imports the module of WGSL, such as student_t.
     #[arg(long, value_name = "NAME", value_parser = path_of_import)]
     import_path: Option<String>,
@@ -106,9 +110,9 @@ fn path_of_import(text: &str) -> Result<String, String> {
 const PROMISED_ROWS: usize = 2048;
 
 pub(super) fn shader(language: Language, args: &ShaderArgs) -> Result<()> {
-    let storage = if args.textures { Storage::Texture } else { Storage::Buffer };
+    let storage = if args.textures || args.argument { Storage::Texture } else { Storage::Buffer };
     let (group, import_path) = (args.group.clone(), args.import_path.clone());
-    let host = Host { group, binding: args.binding, import_path };
+    let host = Host { group, binding: args.binding, import_path, as_argument: args.argument };
     host.check(language).map_err(|why| anyhow!(why))?;
     let set = tables(args.ends.tables.as_deref())?;
     if args.family {

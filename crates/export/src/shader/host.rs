@@ -24,6 +24,9 @@ pub struct Host {
     pub binding: u16,
     /// The name by which naga_oil imports the module.
     pub import_path: Option<String>,
+    /// Whether functions take the tables, which are a texture then, as their last argument, in WGSL
+    /// and GLSL: those of Metal always do.
+    pub as_argument: bool,
 }
 
 impl FromStr for Group {
@@ -61,7 +64,13 @@ impl Host {
     /// What it has instead.
     pub fn check(&self, language: Language) -> Result<(), String> {
         let is_bound = self.group.is_some() || self.binding != 0;
+        let can_be_argument = [Language::Wgsl, Language::Glsl, Language::GlslEs];
         match (language, &self.group) {
+            _ if self.as_argument && !can_be_argument.contains(&language) => {
+                Err("tables are an argument of functions in WGSL, GLSL and GLSL ES if asked for, \
+                     and in Metal always: leave out --argument"
+                    .into())
+            }
             (Language::Wgsl, _) => Ok(()),
             _ if self.import_path.is_some() => {
                 Err("only WGSL has modules with a path for imports: leave out --import-path".into())
@@ -205,7 +214,7 @@ mod tests {
             &[word(6, 43), 1, word(4, 71), 9, 33, 2],
         ];
         let bytes: Vec<u8> = words.concat().into_iter().flat_map(u32::to_le_bytes).collect();
-        let host = Host { group: Some(Group::Number(3)), binding: 5, import_path: None };
+        let host = Host { group: Some(Group::Number(3)), binding: 5, ..Host::default() };
         let placed = host.place_words(&bytes);
         let changed: Vec<(usize, u8)> = (0..bytes.len())
             .filter(|&i| bytes[i] != placed[i])

@@ -152,7 +152,14 @@ impl Language {
 }
 
 /// The comment at the head of the module.
-pub(super) fn head(file: &str, language: Language, storage: Storage, kind: Kind) -> String {
+/// With the tables as an argument if so.
+pub(super) fn head(
+    file: &str,
+    language: Language,
+    storage: Storage,
+    kind: Kind,
+    as_argument: bool,
+) -> String {
     let layout = match kind {
         Kind::Shapes => LAYOUT,
         Kind::Family => c::LAYOUT,
@@ -164,7 +171,7 @@ pub(super) fn head(file: &str, language: Language, storage: Storage, kind: Kind)
         .replace("{accuracy}", kind.accuracy())
         .replace("{file}", file)
         .replace("{language}", language.name())
-        .replace("{binding}", &binding(language, storage, kind))
+        .replace("{binding}", &binding(language, storage, kind, as_argument))
         .replace("{version}", env!("CARGO_PKG_VERSION"))
         .replace("{layout}", &layout.to_string())
 }
@@ -240,7 +247,7 @@ impl Kind {
 }
 
 /// The comment on binding the tables.
-fn binding(language: Language, storage: Storage, kind: Kind) -> String {
+fn binding(language: Language, storage: Storage, kind: Kind, as_argument: bool) -> String {
     let tables = match (storage, language) {
         (Storage::Buffer, _) => {
             "// Tables. Bind the bytes of student_t.bin, unchanged, as a storage buffer."
@@ -257,6 +264,10 @@ fn binding(language: Language, storage: Storage, kind: Kind) -> String {
         }
     };
     let place = match language {
+        _ if as_argument => {
+            "// Functions that read tables have one argument more than below, the last: the texture, which
+// your program binds, as that which comes with this text does."
+        }
         Language::Wgsl => {
             "// Edit the line that begins with @group if your program has other things there. Append your
 // program to this text, as in student_t_sample.wgsl."

@@ -2,6 +2,7 @@
 //! Functions of lobes are the same for single shapes and for a family; what reads the tables is
 //! that of one or of the other.
 
+mod argument;
 mod data;
 mod host;
 mod language;
@@ -86,12 +87,16 @@ fn text_files(
     let slang = (language == Language::Slang).then(|| slang::module(storage, kind));
     let text = slang.as_deref().unwrap_or(module);
     let translation = language.translation(storage, kind).unwrap_or(text.as_bytes());
-    let contents = match language {
-        Language::SpirV => host.place_words(translation),
+    let (contents, sample) = match language {
+        Language::SpirV => (host.place_words(translation), sample),
         _ => {
             let text = str::from_utf8(translation).expect("text but of SPIR-V");
-            host.place(&format!("{}\n{text}", head(&name, language, storage, kind)), language)
-                .into()
+            let [text, sample] = match host.as_argument {
+                true => argument::as_argument(text, &sample),
+                false => [text.to_owned(), sample],
+            };
+            let head = head(&name, language, storage, kind, host.as_argument);
+            (host.place(&format!("{head}\n{text}"), language).into(), sample)
         }
     };
     let sample = host.place_bindings(&sample, language);
@@ -272,7 +277,7 @@ mod tests {
             for language in [Language::Wgsl, Language::GlslEs, Language::Msl, Language::Slang] {
                 for (kind, text) in [(Kind::Shapes, &text), (Kind::Family, &family_module(storage))]
                 {
-                    let head = head("student_t_family.metal", language, storage, kind);
+                    let head = head("student_t_family.metal", language, storage, kind, false);
                     for line in head.lines().chain(text.lines()) {
                         assert!(line.len() <= 100, "{line}");
                     }
