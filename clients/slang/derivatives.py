@@ -58,11 +58,13 @@ def compare(module, function, along, shapes, points, masking=HEIGHT_CORRELATED):
     slopes = [(after - before) / (2 * step) for step, after, before in steps]
     bends = [(after - 2 * value + before) / step for step, after, before in steps]
     # Without the error of second order, from smaller steps and from larger ones. Where these differ
-    # there is a corner of a table between them, or rounding, and neither is the derivative; and
-    # where the bend stays as steps shrink there is a corner at the point.
+    # there is a corner of a table between them, or rounding, and neither is the derivative; so
+    # where half the smallest step has another slope; and where the bend stays as steps shrink there
+    # is a corner at the point.
     near, far = (4 * slopes[0] - slopes[1]) / 3, (4 * slopes[1] - slopes[2]) / 3
+    half = (at(least / 2) - at(-least / 2)) / least
     scale = allowed * np.maximum(np.abs(near), SCALE * size)
-    known = np.isfinite(near) & (scale > 1e-30)
+    known = np.isfinite(near) & (scale > 1e-30) & (np.abs(half - near) <= scale)
     known &= (np.abs(near - far) <= 0.3 * scale) & (np.abs(2 * bends[0] - bends[1]) <= scale)
     errors = np.abs(ours - near)[known] / scale[known]
     return (errors.max(initial=0) if np.isfinite(ours).all() else np.inf), known.mean()
