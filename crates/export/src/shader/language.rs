@@ -299,13 +299,12 @@ fn binding(language: Language, storage: Storage, kind: Kind, as_argument: bool) 
 // at its end. Have this file where modules are searched for, and import student_t, as in
 // student_t_sample.slang.
 //
-// Derivatives. All functions have them with respect to all numbers: sigma, directions, cosines, u.
-// They are those of the branch that is taken: 0 where an argument or a result is at the end of its
-// range, and of albedos those of polynomials, which have corners at nodes. A sampled normal has
-// those for given u. shape has none, since tables are of one gamma each. Slang has one function
-// more,
+// Derivatives. All functions have them with respect to all numbers: sigma, gamma where it is one,
+// directions, cosines, u. They are those of the branch that is taken: 0 where an argument or a
+// result is at the end of its range, and of albedos those of polynomials, which have corners at
+// nodes. A sampled normal has those for given u. Slang has one function more,
 //     student_t_d_of_gamma(gamma: f32, sigma, m) -> f32
-//         D(m) of any gamma without tables, which has them with respect to gamma too"
+//         D(m) of any gamma without tables"
         }
         Language::SpirV => "",
     };
