@@ -37,7 +37,7 @@ fn a_shape_is_a_small_header_beside_the_functions() {
     let shapes =
         ["1e300", "1p501", "1p65", "2", "3", "inf"].map(|g| format!("student_t_gamma_{g}.h"));
     let [functions, materials] =
-        [&["student_t.h", "student_t.hpp"][..], &["student_t_materials.h"]]
+        [&["student_t.h", "student_t.hpp", "student_t_closed.h"][..], &["student_t_materials.h"]]
             .map(|names| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>());
     assert_eq!(names(&out), [&functions[..], &shapes, &materials].concat());
     for name in names(&out) {
@@ -251,6 +251,7 @@ fn every_language_has_all_functions_a_sample_and_data() {
             let ends = ["bin", "exr", "json"].map(|end| format!("{name}.{end}"));
             let mut files = [&[module.clone(), sample.clone()], &ends[..]].concat();
             files.retain(|file| file != "student_t_family.exr");
+            files.extend((language == "wgsl").then(|| "student_t_closed.wgsl".into()));
             files.sort();
             assert_eq!(names(&at.join(&out)), files);
             let text = |name: &str| fs::read_to_string(at.join(&out).join(name)).unwrap();

@@ -12,7 +12,8 @@
 //!
 //! let shape = Shape::bind(&Tables::embedded(), 3.0)?;
 //! let names = files(&Target::C, &[shape]).into_iter().map(|file| file.name);
-//! let functions = ["student_t.h", "student_t_materials.h", "student_t.hpp"];
+//! let functions =
+//!     ["student_t.h", "student_t_materials.h", "student_t.hpp", "student_t_closed.h"];
 //! assert_eq!(names.collect::<Vec<_>>(), [&functions[..], &["student_t_gamma_3.h"]].concat());
 //! # Ok::<(), microfacet_sampler::MaterialError>(())
 //! ```

@@ -23,8 +23,8 @@ static inline float student_t_closed_between(float x, float low, float high)
  * that of gamma < 2 has no limit, at the horizon. */
 static inline float student_t_closed_d(float gamma, const float sigma[2], const float m[3])
 {
-    /* Above 1e6 the shapes do not differ in single precision. */
-    const float s = 1.0f / (student_t_closed_between(gamma, 1.501f, 1e6f) - 1.0f);
+    /* From 1e12 on the tails are those of infinity in single precision. */
+    const float s = 1.0f / (student_t_closed_between(gamma, 1.501f, 1e12f) - 1.0f);
     const float sigma_x = student_t_closed_between(sigma[0], 1e-8f, 1e6f);
     const float sigma_y = student_t_closed_between(sigma[1], 1e-8f, 1e6f);
     const float x = m[0] / sigma_x, y = m[1] / sigma_y;

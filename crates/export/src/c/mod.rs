@@ -64,6 +64,7 @@ fn functions() -> Vec<ExportFile> {
         ExportFile::new(HEADER_NAME, HEADER),
         ExportFile::new(MATERIALS_NAME, MATERIALS.to_owned() + &metals() + "\n#endif\n"),
         ExportFile::new(FRONT_NAME, FRONT),
+        ExportFile::new("student_t_closed.h", include_str!("closed.h")),
     ]
 }
 

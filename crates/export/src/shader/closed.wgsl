@@ -29,8 +29,8 @@ fn student_t_closed_d(gamma: f32, sigma: vec2f, m: vec3f) -> f32 {
     if !(m.z > 0.0) {
         return 0.0;
     }
-    // Above 1e6 the shapes do not differ in single precision.
-    let s = 1.0 / (student_t_closed_between(gamma, 1.501, 1e6) - 1.0);
+    // From 1e12 on the tails are those of infinity in single precision.
+    let s = 1.0 / (student_t_closed_between(gamma, 1.501, 1e12) - 1.0);
     let x = student_t_closed_between(sigma.x, 1e-8, 1e6);
     let y = student_t_closed_between(sigma.y, 1e-8, 1e6);
     let z = student_t_closed_between(m.z, 1e-18, 1.0);

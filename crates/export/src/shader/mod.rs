@@ -101,7 +101,11 @@ fn text_files(
     };
     let sample = host.place_bindings(&sample, language);
     let sample = ExportFile::new(format!("{}_sample.{of_sample}", kind.name()), sample);
-    vec![ExportFile::new(name, contents), sample]
+    let mut files = vec![ExportFile::new(name, contents), sample];
+    if language == Language::Wgsl {
+        files.push(ExportFile::new("student_t_closed.wgsl", include_str!("closed.wgsl")));
+    }
+    files
 }
 
 /// The functions for WebGL 2, without the comment at the head of the file.
