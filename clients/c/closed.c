@@ -35,8 +35,8 @@ int main(void)
         see(&e, student_t_closed_albedo(gamma, sigma, z),
             student_t_lobe_albedo(&round, z, STUDENT_T_HEIGHT_CORRELATED), 1.0f);
     }
-    printf("closed forms: D to %.1e (1 + |ln D|) of itself, of 2e-6 allowed; G1 to %.1e, of 3.2e-4; E "
-           "to %.1e, of 6.6e-3\n",
+    printf("closed forms: D to %.1e (1 + |ln D|) of itself, of 2e-6 allowed; G1 to %.1e, of "
+           "3.2e-4; E to %.1e, of 6.6e-3\n",
            d, g1, e);
     return d <= 2e-6 && g1 <= 3.2e-4 && e <= 6.6e-3 ? 0 : 1;
 }
