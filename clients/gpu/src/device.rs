@@ -17,7 +17,15 @@ pub struct Gpu {
 pub enum Bound {
     Buffer(wgpu::Buffer),
     Texture(wgpu::TextureView),
-    Filtered(wgpu::TextureView, wgpu::Sampler),
+    /// One or two of them.
+    Filtered(Vec<wgpu::TextureView>, wgpu::Sampler),
+}
+
+/// Texels for a filter; a depth of 0 makes the texture two-dimensional.
+pub struct Filtered {
+    pub size: [u32; 3],
+    pub format: wgpu::TextureFormat,
+    pub texels: Vec<u8>,
 }
 
 /// A program with the tables that it reads.
@@ -25,6 +33,10 @@ pub struct Program {
     pipeline: wgpu::ComputePipeline,
     tables: Bound,
 }
+
+/// What is used where a device has it.
+const OPTIONAL: wgpu::Features =
+    wgpu::Features::FLOAT32_FILTERABLE.union(wgpu::Features::SHADER_F16);
 
 impl Gpu {
     /// The software driver of Vulkan, or any hardware if `hardware` is true.
@@ -38,7 +50,7 @@ impl Gpu {
             .map_err(|why| format!("no driver of Vulkan: {why}"))?;
         let descriptor = wgpu::DeviceDescriptor {
             required_limits: adapter.limits(),
-            required_features: adapter.features() & wgpu::Features::FLOAT32_FILTERABLE,
+            required_features: adapter.features() & OPTIONAL,
             ..Default::default()
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
@@ -63,16 +75,20 @@ impl Gpu {
         self.device.features().contains(wgpu::Features::FLOAT32_FILTERABLE)
     }
 
-    /// Texels of one channel, read by a linear filter that clamps at the edges.
-    pub fn filtered(&self, size: [u32; 3], half: bool, texels: &[u8]) -> Bound {
-        use wgpu::TextureFormat::{R16Float, R32Float};
+    /// Whether it computes in half precision.
+    pub fn has_halves(&self) -> bool {
+        self.device.features().contains(wgpu::Features::SHADER_F16)
+    }
+
+    /// Textures read by a linear filter that clamps at the edges.
+    pub fn filtered(&self, textures: &[Filtered]) -> Bound {
         let sampler = self.device.create_sampler(&wgpu::SamplerDescriptor {
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
             ..Default::default()
         });
-        let format = if half { R16Float } else { R32Float };
-        Bound::Filtered(self.view(size, format, texels), sampler)
+        let view = |of: &Filtered| self.view(of.size, of.format, &of.texels);
+        Bound::Filtered(textures.iter().map(view).collect(), sampler)
     }
 
     /// A texture of these texels; a depth of 0 makes it two-dimensional.
@@ -100,11 +116,15 @@ impl Gpu {
         texture.create_view(&Default::default())
     }
 
+    /// A module of WGSL, which is valid.
+    pub fn module(&self, wgsl: &str) -> wgpu::ShaderModule {
+        let source = wgpu::ShaderSource::Wgsl(wgsl.into());
+        self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source })
+    }
+
     /// A program with its entry point.
     pub fn program(&self, wgsl: &str, entry: &str, tables: Bound) -> Program {
-        let source = wgpu::ShaderSource::Wgsl(wgsl.into());
-        let module =
-            &self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+        let module = &self.module(wgsl);
         let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: None,
             layout: None,
@@ -117,7 +137,8 @@ impl Gpu {
     }
 
     /// Runs a program, and returns the `output` bytes that it writes to binding 2. `input` is in
-    /// binding 1, `uniform`, if any, in binding 3, and a filter in binding 4.
+    /// binding 1, `uniform`, if any, in binding 3, a filter in binding 4, and a second filtered
+    /// texture in binding 5.
     pub fn run(
         &self,
         program: &Program,
@@ -141,12 +162,15 @@ impl Gpu {
         let written = sized(BufferUsages::STORAGE | BufferUsages::COPY_SRC);
         let read = sized(BufferUsages::MAP_READ | BufferUsages::COPY_DST);
 
-        let (tables, sampler) = match &program.tables {
-            Bound::Buffer(buffer) => (buffer.as_entire_binding(), None),
-            Bound::Texture(view) => (BindingResource::TextureView(view), None),
-            Bound::Filtered(view, sampler) => {
-                (BindingResource::TextureView(view), Some(BindingResource::Sampler(sampler)))
-            }
+        let texture = BindingResource::TextureView;
+        let (tables, sampler, second) = match &program.tables {
+            Bound::Buffer(buffer) => (buffer.as_entire_binding(), None, None),
+            Bound::Texture(view) => (texture(view), None, None),
+            Bound::Filtered(views, sampler) => (
+                texture(&views[0]),
+                Some(BindingResource::Sampler(sampler)),
+                views.get(1).map(texture),
+            ),
         };
         let resources = [
             Some(tables),
@@ -154,6 +178,7 @@ impl Gpu {
             Some(written.as_entire_binding()),
             uniform.as_ref().map(|buffer| buffer.as_entire_binding()),
             sampler,
+            second,
         ];
         let entries: Vec<BindGroupEntry<'_>> = (0..)
             .zip(resources)

@@ -8,8 +8,9 @@ use microfacet_sampler::{Masking, Tables};
 use naga::front::wgsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use serde_json::Value;
+use wgpu::TextureFormat;
 
-use crate::device::Gpu;
+use crate::device::{Filtered, Gpu};
 
 /// Largest errors of the crate's own albedos: for σ ≥ 0.01 and cos θ ≥ 0.02, and elsewhere.
 const CRATE: [f64; 2] = [2e-4, 1.3e-3];
@@ -74,7 +75,9 @@ fn agrees(gpu: &Gpu, folder: &Path, name: &str) -> bool {
             [gamma.unwrap_or(shape), sigma as f32, mu as f32, 0.0]
         })
         .collect();
-    let program = gpu.program(&wgsl, "main", gpu.filtered(size, half, texels));
+    let format = if half { TextureFormat::R16Float } else { TextureFormat::R32Float };
+    let texture = Filtered { size, format, texels: texels.to_vec() };
+    let program = gpu.program(&wgsl, "main", gpu.filtered(&[texture]));
     let groups = POINTS.div_ceil(64) as u32;
     let bytes = gpu.run(&program, bytemuck::cast_slice(&places), None, 4 * POINTS, groups);
     let found: Vec<f32> = bytemuck::pod_collect_to_vec(&bytes);

@@ -9,6 +9,7 @@ mod device;
 mod export;
 mod family;
 mod lut;
+mod realtime;
 mod sample;
 mod sphere;
 
@@ -60,6 +61,7 @@ fn main() -> ExitCode {
     good &= sample::runs(&gpu, &argument, gpu.texture(&argument.tables));
     good &= lut::lines_are_valid();
     good &= lut::agree(&gpu, &folder.join("lut"));
+    good &= realtime::agrees(&gpu, &folder.join("wgsl-realtime"), points / 4);
     good &= sphere::agrees(&gpu, &buffers, Path::new(picture));
     println!("{}", if good { "Shaders agree with the crate." } else { "They differ." });
     ExitCode::from(u8::from(!good))

@@ -25,6 +25,7 @@ mod c;
 mod family;
 mod members;
 pub mod numbers;
+mod realtime;
 mod shader;
 mod shape;
 pub mod texture;
@@ -32,8 +33,9 @@ pub mod texture;
 pub use albedo::AlbedoTable;
 pub use family::Family;
 pub use members::Part;
+pub use realtime::Realtime;
 pub use shader::{Group, Host, Kind, Language, Storage, texture_rows};
-pub use shader::{WIDTH, append_some, for_webgl, wgsl_crc32};
+pub use shader::{WIDTH, append_some, for_webgl, realtime_text, wgsl_crc32};
 pub use shape::Shape;
 
 /// The language of an export.
@@ -104,6 +106,16 @@ pub fn family_shader_files(
     family: &Family,
 ) -> Vec<ExportFile> {
     shader::family_files(language, storage, host, family)
+}
+
+/// The files of the kit for real time in a shading language: functions, which read no texture
+/// themselves, a program that does, two textures for linear filters, and their description.
+///
+/// # Panics
+/// For SPIR-V, which has no functions without a program.
+#[must_use]
+pub fn realtime_files(language: Language, host: &Host, realtime: &Realtime) -> Vec<ExportFile> {
+    shader::realtime_files(language, host, realtime)
 }
 
 /// The header of dielectrics of one index for C; the functions and lobes are among the [`files`] of

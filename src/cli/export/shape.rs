@@ -5,15 +5,15 @@ use std::path::PathBuf;
 use microfacet_baker::store::OutputFolder;
 use microfacet_core::Masking;
 use microfacet_export::{
-    ExportFile, Family, Group, Host, Language, Shape, Storage, Target, family_file,
-    family_shader_files, files, interface_file, texture_rows,
+    ExportFile, Family, Group, Host, Language, Realtime, Shape, Storage, Target, family_file,
+    family_shader_files, files, interface_file, realtime_files, texture_rows,
 };
 use microfacet_sampler::Tables;
 use microfacet_sampler::port::interface_tables;
 use microfacet_tables::SIGMA_MAX;
 
 use crate::cli::words::distinct;
-use crate::cli::{Result, anyhow, note, tables, values};
+use crate::cli::{Result, anyhow, ensure, note, tables, values};
 
 /// Where tables come from and files go to.
 #[derive(clap::Args)]
@@ -61,14 +61,25 @@ pub(super) struct CArgs {
 
 /// Shapes for shaders.
 #[derive(clap::Args)]
+#[command(after_help = "Examples:
+  microfacet-bake export wgsl --family --out student-t
+Every gamma and sigma, with sampling, for path tracers.
+  microfacet-bake export wgsl --gamma 3 --gamma 1.65 --out student-t
+Two shapes for any sigma.
+  microfacet-bake export wgsl --realtime --out student-t
+Every gamma and sigma at a fetch or two for each light, without sampling.")]
 pub(super) struct ShaderArgs {
     /// Shape in [1.501, inf]; 2 is GGX, inf is Beckmann. Several are separated by commas, or in
     /// options of their own.
-    #[arg(long, value_name = "G", required_unless_present = "family", value_delimiter = ',', value_parser = values::gamma)]
+    #[arg(long, value_name = "G", required_unless_present_any = ["family", "realtime"], value_delimiter = ',', value_parser = values::gamma)]
     gamma: Vec<f64>,
     /// All shapes, with gamma as an argument, as student_t_family.bin, which C reads as well.
     #[arg(long, conflicts_with = "gamma")]
     family: bool,
+    /// The kit for real time, of gamma from 1.6 on and sigma up to 1: functions that read nothing
+    /// themselves, and two textures for linear filters, of masking and of albedos.
+    #[arg(long, conflicts_with_all = ["gamma", "family", "textures", "no_albedo", "group", "binding", "argument"])]
+    realtime: bool,
     #[command(flatten)]
     ends: Ends,
     /// Have a shader read its tables from a texture, not from a buffer. GLSL ES has no other way.
@@ -114,7 +125,16 @@ pub(super) fn shader(language: Language, args: &ShaderArgs) -> Result<()> {
     let (group, import_path) = (args.group.clone(), args.import_path.clone());
     let host = Host { group, binding: args.binding, import_path, as_argument: args.argument };
     host.check(language).map_err(|why| anyhow!(why))?;
+    ensure!(
+        !(args.realtime && language == Language::SpirV),
+        "SPIR-V has no functions without a program, and --realtime is functions: export wgsl, glsl, \
+         glsl-es, hlsl, msl or slang"
+    );
     let set = tables(args.ends.tables.as_deref())?;
+    if args.realtime {
+        let realtime = Realtime::bake(&set)?;
+        return write(&args.ends, &realtime_files(language, &host, &realtime));
+    }
     if args.family {
         let family = Family::bind(&set, !args.no_albedo)?;
         return write(&args.ends, &family_shader_files(language, storage, &host, &family));

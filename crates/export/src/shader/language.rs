@@ -1,7 +1,7 @@
 //! Shading languages: what is particular to each.
 
 use super::data::LAYOUT;
-use crate::c;
+use crate::{c, realtime};
 
 /// A shading language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -38,6 +38,8 @@ pub enum Kind {
     Shapes,
     /// Every γ.
     Family,
+    /// None: functions for real time take what they need as arguments.
+    Realtime,
 }
 
 impl Kind {
@@ -46,6 +48,7 @@ impl Kind {
         match self {
             Self::Shapes => "student_t",
             Self::Family => "student_t_family",
+            Self::Realtime => "student_t_realtime",
         }
     }
 }
@@ -58,8 +61,9 @@ impl Language {
 
     /// File extensions of the module and of the sample. SPIR-V is both in one file, and its sample
     /// is the source, which declares what it takes and returns.
-    pub(super) fn extensions(self) -> [&'static str; 2] {
+    pub(super) fn extensions(self, kind: Kind) -> [&'static str; 2] {
         match self {
+            Self::Glsl if kind == Kind::Realtime => ["glsl", "frag"],
             Self::Wgsl => ["wgsl", "wgsl"],
             Self::Glsl => ["glsl", "comp"],
             Self::GlslEs => ["glsl", "frag"],
@@ -78,6 +82,7 @@ impl Language {
                 match kind {
                     Kind::Shapes => include_bytes!(concat!("translated/", $file)),
                     Kind::Family => include_bytes!(concat!("translated/family_", $file)),
+                    Kind::Realtime => return self.translation_for_real_time(),
                 }
             };
         }
@@ -95,8 +100,32 @@ impl Language {
         })
     }
 
+    /// The functions for real time, which read no storage.
+    fn translation_for_real_time(self) -> Option<&'static [u8]> {
+        Some(match self {
+            Self::Wgsl | Self::Slang => return None,
+            Self::GlslEs => include_bytes!("translated/realtime_es.glsl"),
+            Self::Glsl => include_bytes!("translated/realtime.glsl"),
+            Self::Hlsl => include_bytes!("translated/realtime.hlsl"),
+            Self::Msl => include_bytes!("translated/realtime.metal"),
+            Self::SpirV => panic!("functions for real time are no program"),
+        })
+    }
+
     /// A program that uses the module.
     pub(super) fn sample(self, storage: Storage, kind: Kind) -> String {
+        if kind == Kind::Realtime {
+            return match self {
+                Self::Wgsl => include_str!("samples/realtime.wgsl"),
+                Self::Glsl => include_str!("samples/realtime.glsl"),
+                Self::GlslEs => include_str!("samples/realtime.frag"),
+                Self::Hlsl => include_str!("samples/realtime.hlsl"),
+                Self::Msl => include_str!("samples/realtime.metal"),
+                Self::Slang => include_str!("samples/realtime.slang"),
+                Self::SpirV => panic!("functions for real time are no program"),
+            }
+            .into();
+        }
         let text = match self {
             Self::Wgsl | Self::SpirV => include_str!("samples/sample.wgsl"),
             Self::Glsl => include_str!("samples/sample.comp"),
@@ -163,6 +192,7 @@ pub(super) fn head(
     let layout = match kind {
         Kind::Shapes => LAYOUT,
         Kind::Family => c::LAYOUT,
+        Kind::Realtime => return head_for_real_time(file, language),
     };
     include_str!("head.txt")
         .replace("{load}", kind.load())
@@ -176,6 +206,39 @@ pub(super) fn head(
         .replace("{layout}", &layout.to_string())
 }
 
+/// The comment at the head of the functions for real time.
+fn head_for_real_time(file: &str, language: Language) -> String {
+    let [gammas, sigmas, views] = realtime::ALBEDO;
+    let place = match language {
+        Language::Wgsl => "Append your program to this text, as in student_t_realtime_sample.wgsl.",
+        Language::Glsl => {
+            "Include this text after #version, as in student_t_realtime_sample.frag; OpenGL, which\n\
+             // has no #include, takes the text itself in its place."
+        }
+        Language::GlslEs => {
+            "Insert this text before your functions, and after\n//     precision highp float;\n// \
+             which stands at the head of your shader: with less it errs."
+        }
+        Language::Hlsl => "Include this text, as in student_t_realtime_sample.hlsl.",
+        Language::Msl => "Include this text, as in student_t_realtime_sample.metal.",
+        Language::Slang => {
+            "Have this file where modules are searched for, and import student_t_realtime. All\n\
+             // functions are differentiable with respect to all numbers, and so to texels."
+        }
+        Language::SpirV => "",
+    };
+    include_str!("realtime_head.txt")
+        .replace("{place}", &format!("// {place}"))
+        .replace("{file}", file)
+        .replace("{language}", language.name())
+        .replace("{version}", env!("CARGO_PKG_VERSION"))
+        .replace("{gammas}", &gammas.to_string())
+        .replace("{sigmas}", &sigmas.to_string())
+        .replace("{views_of_masking}", &realtime::VIEWS_OF_MASKING.to_string())
+        .replace("{views}", &views.to_string())
+}
+
+/// What heads of modules with tables say; that of the kit for real time is another.
 impl Kind {
     /// How a lobe is made.
     fn load(self) -> &'static str {
@@ -190,7 +253,7 @@ impl Kind {
 // there without lobe_ in their names, as student_t_d(shape, sigma, m), and make a lobe in each
 // call."
             }
-            Self::Family => {
+            Self::Family | Self::Realtime => {
                 "\
 // A lobe is a shape gamma and a roughness. Make it once at a hit, from the tables, and hand it on:
 //
@@ -209,7 +272,7 @@ impl Kind {
 // more is said of arguments that are NaN.
 //   shape     The place of its first pair in the tables, \"offset\" in student_t.json."
             }
-            Self::Family => {
+            Self::Family | Self::Realtime => {
                 "\
 // Domain. Nothing reads outside the tables, and with directions of length 1, or null, no result is
 // NaN or infinite. Shaders may take NaN and infinity for anything, so that no more is said of
@@ -224,7 +287,7 @@ impl Kind {
     fn cost(self) -> &'static str {
         match self {
             Self::Shapes => "Albedos take 36 nodes of a table:",
-            Self::Family => "Albedos take 36 codes of a table:",
+            Self::Family | Self::Realtime => "Albedos take 36 codes of a table:",
         }
     }
 
@@ -237,7 +300,7 @@ impl Kind {
 // precision. What shaders add is in docs/shaders.md of microfacet-bake, which also has code that
 // binds the tables."
             }
-            Self::Family => {
+            Self::Family | Self::Realtime => {
                 "\
 // Accuracy. docs/shaders.md of microfacet-bake has what was measured, and code that binds the
 // tables."
@@ -312,7 +375,7 @@ fn binding(language: Language, storage: Storage, kind: Kind, as_argument: bool) 
     let text = format!("{tables}\n{}", place.replace("{std}", std));
     match kind {
         Kind::Shapes => text,
-        Kind::Family => text
+        Kind::Family | Kind::Realtime => text
             .replace("student_t.", "student_t_family.")
             .replace("student_t_sample", "student_t_family_sample")
             .replace("gl.RG32F", "gl.R32UI")

@@ -13,7 +13,7 @@ use std::fmt::Write;
 use microfacet_tables::crc32;
 
 use super::members::{Member, Value};
-use super::{ExportFile, Family, Shape};
+use super::{ExportFile, Family, Realtime, Shape};
 pub use data::texture_rows;
 pub use data::{WIDTH, append_some};
 pub use host::{Group, Host};
@@ -73,6 +73,24 @@ pub(super) fn family_files(
     files
 }
 
+/// The functions for real time, a program that uses them, and the textures.
+pub(super) fn realtime_files(
+    language: Language,
+    host: &Host,
+    realtime: &Realtime,
+) -> Vec<ExportFile> {
+    let mut files = realtime_text(language, host);
+    realtime.append_files(&mut files);
+    files
+}
+
+/// The functions for real time, and a program that uses them.
+#[doc(hidden)]
+pub fn realtime_text(language: Language, host: &Host) -> Vec<ExportFile> {
+    let module = include_str!("realtime.wgsl");
+    text_files(Kind::Realtime, language, Storage::Texture, host, module)
+}
+
 /// The module, and a program that uses it.
 fn text_files(
     kind: Kind,
@@ -82,7 +100,7 @@ fn text_files(
     module: &str,
 ) -> Vec<ExportFile> {
     let sample = language.sample(storage, kind);
-    let [of_module, of_sample] = language.extensions();
+    let [of_module, of_sample] = language.extensions(kind);
     let name = format!("{}.{of_module}", kind.name());
     let slang = (language == Language::Slang).then(|| slang::module(storage, kind));
     let text = slang.as_deref().unwrap_or(module);
@@ -102,7 +120,7 @@ fn text_files(
     let sample = host.place_bindings(&sample, language);
     let sample = ExportFile::new(format!("{}_sample.{of_sample}", kind.name()), sample);
     let mut files = vec![ExportFile::new(name, contents), sample];
-    if language == Language::Wgsl {
+    if language == Language::Wgsl && kind != Kind::Realtime {
         files.push(ExportFile::new("student_t_closed.wgsl", include_str!("closed.wgsl")));
     }
     files
@@ -122,7 +140,8 @@ pub fn wgsl_crc32(shape: &Shape) -> String {
         let [shapes, family] = [Kind::Shapes, Kind::Family].map(sample);
         [module(&shape.lists(), storage), shapes, family_module(storage), family].join("\n")
     });
-    let lines = texts.iter().flat_map(|text| text.lines());
+    let realtime = include_str!("realtime.wgsl");
+    let lines = texts.iter().flat_map(|text| text.lines()).chain(realtime.lines());
     let code: Vec<&str> = lines.filter(|line| !line.trim_start().starts_with("//")).collect();
     crc32(code.join("\n").as_bytes())
 }
@@ -208,9 +227,11 @@ fn loader(
 mod tests {
     use microfacet_core::schlick::{F82_AVERAGE, F82_SCALE, SCHLICK_AVERAGE};
     use microfacet_sampler::{StudentT, Tables};
+    use microfacet_tables::axis::LogShape;
 
     use super::super::family::Block;
     use super::super::numbers::single;
+    use super::super::realtime;
     use super::*;
 
     #[test]
@@ -239,6 +260,30 @@ mod tests {
         for (name, value) in constants {
             let line = format!("const STUDENT_T_IMPL_{name} = {value}u;\n");
             assert!(OF_FAMILY.contains(&line), "{line}");
+        }
+        let [gammas, sigmas, views] = realtime::ALBEDO;
+        let sizes = [
+            ("GAMMAS", gammas),
+            ("SIGMAS", sigmas),
+            ("VIEWS", views),
+            ("VIEWS_OF_MASKING", realtime::VIEWS_OF_MASKING),
+        ];
+        let real_time = include_str!("realtime.wgsl");
+        for (name, texels) in sizes {
+            let line = format!("const STUDENT_T_{name} = {texels}.0;\n");
+            assert!(real_time.contains(&line), "{line}");
+        }
+        let axis = 1.0 / LogShape::BAKED.coordinate(realtime::GAMMA_MIN) * std::f64::consts::LN_2;
+        let constants = [
+            format!("let shape = {} * log2(1.0 + 17.0 * heavy);", single(axis as f32)),
+            format!("let kappa = {0:?} + {0:?} * heavy;", realtime::kappa(f64::INFINITY)),
+            format!("clamp(gamma, {:?}, 1e6)", realtime::GAMMA_MIN),
+            format!("* {});\n", single((6.0 / 7.0_f64).powi(5) as f32)),
+            format!("let peak = {} * cos_theta", single(F82_SCALE as f32)),
+            format!("- {} * student_t_impl_untinted", single(F82_AVERAGE as f32)),
+        ];
+        for constant in constants {
+            assert!(real_time.contains(&constant), "{constant}");
         }
         let width = data::WIDTH;
         let (mask, shift) = (width - 1, width.ilog2());

@@ -10,14 +10,18 @@ use super::{Kind, Language, Storage};
 /// The functions in Slang.
 pub(super) fn module(storage: Storage, kind: Kind) -> String {
     let hlsl = Language::Hlsl.translation(storage, kind).expect("HLSL is a translation");
-    from_hlsl(str::from_utf8(hlsl).expect("HLSL is text"))
+    let text = from_hlsl(str::from_utf8(hlsl).expect("HLSL is text"));
+    match kind {
+        Kind::Realtime => text,
+        Kind::Shapes | Kind::Family => format!("{text}\n{}", include_str!("d_of_gamma.slang")),
+    }
 }
 
 fn from_hlsl(hlsl: &str) -> String {
     let mut is_differentiable = false;
     let code = hlsl.lines().filter(|line| !line.starts_with('#'));
     let code: String = code.map(|line| of_line(line, &mut is_differentiable)).collect();
-    format!("{}\n\n{}", code.trim(), include_str!("additions.slang"))
+    format!("{}\n\n{}", code.trim(), include_str!("root.slang"))
 }
 
 /// A line of HLSL; attributes stand on the line before. `is_differentiable` is of the function that
@@ -73,9 +77,10 @@ mod tests {
     fn all_that_numbers_pass_is_differentiable() {
         let all = [Storage::Buffer, Storage::Texture]
             .map(|storage| [Kind::Shapes, Kind::Family].map(|kind| (storage, kind)));
-        for (storage, kind) in all.into_iter().flatten() {
+        let realtime = (Storage::Texture, Kind::Realtime);
+        for (storage, kind) in all.into_iter().flatten().chain([realtime]) {
             let text = module(storage, kind);
-            let (text, _) = text.split_once("\n// The root.").expect("additions");
+            let (text, _) = text.split_once("\n// The root.").expect("what is added");
             let lines: Vec<&str> = text.lines().collect();
             let mut functions = 0;
             for pair in lines.windows(2) {
@@ -86,12 +91,13 @@ mod tests {
                     functions += 1;
                 }
             }
-            assert!(functions > 40, "{functions}");
+            let has_tables = kind != Kind::Realtime;
+            assert!(functions > if has_tables { 40 } else { 15 }, "{functions}");
             let count = |part: &str| text.matches(part).count();
             // All floats of the tables are constants; nothing is left of the preprocessor and of
             // registers.
             let reads = count("asfloat(") + count(" student_t_tables.Load(");
-            assert!(reads > 0, "{kind:?}");
+            assert_eq!(reads > 0, has_tables, "{kind:?}");
             assert_eq!(count("asfloat("), count("no_diff asfloat("));
             assert_eq!(count("floor("), count("no_diff floor("));
             assert_eq!(count("sqrt("), count("student_t_impl_sqrt("));
@@ -101,7 +107,7 @@ mod tests {
 
     #[test]
     fn constants_of_gamma_are_those_of_the_crate() {
-        let text = include_str!("additions.slang");
+        let text = include_str!("d_of_gamma.slang");
         let least = 2f32.powi(-40);
         for (number, after) in [(least, "1.0 / (gamma - 1.0), "), (1.0 / least, "gamma - 1.0, ")] {
             let (_, rest) = text.split_once(&format!("({after}")).expect(after);

@@ -189,7 +189,7 @@ fn quantities(channels: &[Channel]) -> Vec<(&'static str, Reading)> {
     let mut all: Vec<(&'static str, Reading)> = Vec::new();
     for (i, &channel) in channels.iter().enumerate() {
         match channel {
-            Channel::Empty | Channel::Excess => {}
+            Channel::Empty | Channel::Excess | Channel::TintExcess | Channel::RootLost => {}
             // The error of 1 − E is that of E.
             Channel::Lost => all.push(("e", Box::new(move |read, t| (1.0 - read(i), t.e)))),
             _ => all.push((channel.name(), Box::new(move |read, t| (read(i), channel.of(t))))),
@@ -199,7 +199,8 @@ fn quantities(channels: &[Channel]) -> Vec<(&'static str, Reading)> {
     let [e, excess, scale, bias] =
         [Channel::E, Channel::Excess, Channel::Scale, Channel::Bias].map(find);
     if let (Some(e), Some(excess)) = (e, excess) {
-        let bias = move |read: &dyn Fn(usize) -> f64, t: Truth| read(excess) + read(e) * t.mirror;
+        let bias =
+            move |read: &dyn Fn(usize) -> f64, t: Truth| read(excess) + read(e) * t.mirror[0];
         all.push(("bias", Box::new(move |read, t| (bias(read, t), t.bias))));
         all.push(("scale", Box::new(move |read, t| (read(e) - bias(read, t), t.e - t.bias))));
     }

@@ -26,6 +26,7 @@ use rayon::prelude::*;
 
 pub use axis::{Along, Place, TexelAxis};
 pub use certificate::{Checks, Deviation, Known, known};
+pub(crate) use file::ktx2::encode_texels;
 pub use file::{BeforeRounding, Format, Made, files};
 pub use shader::coordinates as shader_coordinates;
 pub use shader::{Lines, shader_lines};
@@ -244,6 +245,16 @@ impl TextureSpec {
         let texel = |i: usize| planes.iter().map(move |plane| plane[i]);
         let values = (0..planes[0].len()).flat_map(texel).collect();
         Ok(Texture { spec: self.clone(), values, half: false })
+    }
+
+    /// The values of the channels at each texel, from albedos that are at hand.
+    pub(crate) fn exact(&self, truth: impl Fn(&Place) -> Truth + Sync) -> Vec<Vec<f32>> {
+        let texels = self.grid(|axis| axis.texels.clone());
+        let of = |i| {
+            let truth = truth(&place(&self.axes, self.gamma, &texels.at(i)));
+            self.channels.iter().map(|channel| channel.of(truth) as f32).collect()
+        };
+        (0..texels.len()).into_par_iter().map(of).collect()
     }
 
     fn grid(&self, along: impl Fn(&TexelAxis) -> Vec<f64>) -> Grid {

@@ -5,8 +5,7 @@ use std::collections::{HashMap, HashSet};
 use microfacet_baker::bake::albedo::weights;
 use microfacet_baker::progress::Stage;
 use microfacet_core::Masking;
-use microfacet_core::schlick::SCHLICK_AVERAGE;
-use microfacet_model::fresnel::schlick_weight;
+use microfacet_core::schlick::{F82_AVERAGE, SCHLICK_AVERAGE, f82_weight, schlick_weight};
 use microfacet_model::{AlbedoIntegrator, ParameterError, Shape};
 use rayon::prelude::*;
 
@@ -23,12 +22,16 @@ pub enum Channel {
     E,
     /// 1 − E.
     Lost,
+    /// √(1 − E), of which small losses keep their order of magnitude.
+    RootLost,
     /// Factor of F0 under Schlick's reflectance.
     Scale,
     /// Factor of F90, E − scale.
     Bias,
     /// bias − E (1−μ)⁵, which vanishes with σ; of averages, bias − E/21.
     Excess,
+    /// The moment of F82, less E times that of a mirror.
+    TintExcess,
     /// A channel of an engine that is no albedo of this family: 0.
     Empty,
 }
@@ -39,9 +42,11 @@ impl Channel {
         match self {
             Self::E => "e",
             Self::Lost => "one_minus_e",
+            Self::RootLost => "root_one_minus_e",
             Self::Scale => "scale",
             Self::Bias => "bias",
             Self::Excess => "bias_excess",
+            Self::TintExcess => "f82_excess",
             Self::Empty => "empty",
         }
     }
@@ -49,7 +54,7 @@ impl Channel {
     /// The range of its values. A fit may exceed it, which would make a loss negative.
     pub(super) fn range(self) -> [f64; 2] {
         match self {
-            Self::Excess => [-1.0, 1.0],
+            Self::Excess | Self::TintExcess => [-1.0, 1.0],
             _ => [0.0, 1.0],
         }
     }
@@ -58,9 +63,11 @@ impl Channel {
         match self {
             Self::E => truth.e,
             Self::Lost => 1.0 - truth.e,
+            Self::RootLost => (1.0 - truth.e).max(0.0).sqrt(),
             Self::Scale => truth.e - truth.bias,
             Self::Bias => truth.bias,
-            Self::Excess => truth.bias - truth.e * truth.mirror,
+            Self::Excess => truth.bias - truth.e * truth.mirror[0],
+            Self::TintExcess => truth.tint - truth.e * truth.mirror[1],
             Self::Empty => 0.0,
         }
     }
@@ -73,8 +80,18 @@ pub struct Truth {
     pub e: f64,
     /// The component of E with the factor F90.
     pub bias: f64,
-    /// The bias of a mirror, (1−μ)⁵; of an average, 1/21.
-    pub mirror: f64,
+    /// The moment of OpenPBR's tint at 82°, over its peak.
+    pub tint: f64,
+    /// The bias and the moment of the tint of a mirror, (1−μ)⁵ and 7⁷/6⁶ μ(1−μ)⁶, or their averages.
+    pub mirror: [f64; 2],
+}
+
+impl Truth {
+    /// E, its bias and the moment of the tint, at a view, or their averages.
+    pub(crate) fn new(cos: Option<f64>, [e, bias, tint]: [f64; 3]) -> Self {
+        let of_view = |cos| [schlick_weight(cos), f82_weight(cos)];
+        Self { e, bias, tint, mirror: cos.map_or([SCHLICK_AVERAGE, F82_AVERAGE], of_view) }
+    }
 }
 
 /// The albedos of `count` places with the shapes `gammas`, each a step of the stage; either all
@@ -98,13 +115,13 @@ pub(super) fn truths(
     let of = |i: usize| {
         let place = place(i);
         let integrator = &integrators[&place.gamma.to_bits()];
-        let (albedo, mirror) = match place.cos {
-            Some(cos) => (integrator.reflection(place.sigma, cos, weights)?, schlick_weight(cos)),
-            None => (integrator.average(place.sigma, weights)?, SCHLICK_AVERAGE),
+        let albedo = match place.cos {
+            Some(cos) => integrator.reflection(place.sigma, cos, weights)?,
+            None => integrator.average(place.sigma, weights)?,
         };
         stage.step();
-        let [scale, bias, _] = albedo.of(masking);
-        Ok(Truth { e: scale + bias, bias, mirror })
+        let [scale, bias, tint] = albedo.of(masking);
+        Ok(Truth::new(place.cos, [scale + bias, bias, tint]))
     };
     (0..count).into_par_iter().map(of).collect()
 }

@@ -33,35 +33,46 @@ pub fn translate(
 fn text(wgsl: &str, language: Language, storage: Storage, kind: Kind) -> String {
     let stage =
         if language == Language::GlslEs { "fragment" } else { "compute @workgroup_size(1)" };
-    let reader = match kind {
-        Kind::Shapes => "student_t_impl_pair",
-        Kind::Family => "student_t_impl_word",
+    // What uses the tables, if there are any.
+    let used = match kind {
+        Kind::Shapes => "student_t_impl_pair(0u)",
+        Kind::Family => "student_t_impl_word(0u)",
+        Kind::Realtime => "student_t_impl_texel(0.0, 1.0)",
     };
-    let entry = format!("@{stage} fn {ENTRY}() {{ _ = {reader}(0u); }}\n");
+    let entry = format!("@{stage} fn {ENTRY}() {{ _ = {used}; }}\n");
     let (module, info) = parse(&format!("{wgsl}\n{entry}"));
     match language {
         Language::Glsl => {
             let version = glsl::Version::Desktop(430);
             let text = glsl(&module, &info, version, ShaderStage::Compute);
+            if kind == Kind::Realtime {
+                return guarded(&without_lines(&text, &["#", "layout(local_size"]), kind);
+            }
             let mut names = vec![("_group_0_binding_0_cs", "student_t_tables")];
             if storage == Storage::Buffer {
                 names.push((block(&text), "student_t_tables_block"));
             }
             let text = renamed(&text, &names);
-            guarded(&bindable_glsl(
-                &without_lines(&text, &["#", "layout(local_size"]),
-                storage,
-                kind,
-            ))
+            let text = without_lines(&text, &["#", "layout(local_size"]);
+            guarded(&bindable_glsl(&text, storage, kind), kind)
         }
         Language::GlslEs => {
             let version = glsl::Version::Embedded { version: 300, is_webgl: true };
             let text = glsl(&module, &info, version, ShaderStage::Fragment);
-            let text = renamed(&text, &[("_group_0_binding_0_fs", "student_t_tables")]);
+            let name = [("_group_0_binding_0_fs", "student_t_tables")];
+            let text = if kind == Kind::Realtime { text } else { renamed(&text, &name) };
             without_lines(&text, &["#version", "precision "]).trim_start().into()
         }
-        Language::Hlsl => guarded(&bindable_hlsl(&hlsl(&module, &info))),
-        Language::Msl => guarded(&includable_msl(&msl(&module, &info), storage, kind)),
+        Language::Hlsl => {
+            let text = hlsl(&module, &info);
+            let text = if kind == Kind::Realtime { text } else { bindable_hlsl(&text) };
+            guarded(&text, kind)
+        }
+        Language::Msl => {
+            // What takes no tables is as it were of a texture.
+            let storage = if kind == Kind::Realtime { Storage::Texture } else { storage };
+            guarded(&includable_msl(&msl(&module, &info), storage, kind), kind)
+        }
         Language::Wgsl | Language::Slang | Language::SpirV => panic!("no translation into text"),
     }
 }
@@ -102,26 +113,22 @@ fn hlsl(module: &Module, info: &ModuleInfo) -> String {
     let (options, pipeline) = (hlsl::Options::default(), hlsl::PipelineOptions::default());
     let mut text = String::new();
     hlsl::Writer::new(&mut text, &options, &pipeline).write(module, info, None).expect(OURS);
-    let text = without_entry(&text, "\n[numthreads(");
-    renamed(&text, &[("naga_", "student_t_impl_")])
+    without_entry(&text, "\n[numthreads(").replace("naga_", "student_t_impl_")
 }
 
 fn msl(module: &Module, info: &ModuleInfo) -> String {
     let options = msl::Options { lang_version: (2, 0), ..msl::Options::default() };
     let pipeline = msl::PipelineOptions::default();
     let (text, _) = msl::write_string(module, info, &options, &pipeline).expect(OURS);
-    let text = without_entry(&text, "\nkernel void ");
-    renamed(&text, &[("naga_", "student_t_impl_")])
+    without_entry(&text, "\nkernel void ").replace("naga_", "student_t_impl_")
 }
 
 /// Lets users of GLSL say where the tables are.
 fn bindable_glsl(text: &str, storage: Storage, kind: Kind) -> String {
     let (declared, default) = match storage {
         Storage::Buffer => ("layout(std430) readonly buffer", "layout(std430, binding = 0)"),
-        Storage::Texture => match kind {
-            Kind::Shapes => ("uniform sampler2D", "layout(binding = 0)"),
-            Kind::Family => ("uniform usampler2D", "layout(binding = 0)"),
-        },
+        Storage::Texture if kind == Kind::Family => ("uniform usampler2D", "layout(binding = 0)"),
+        Storage::Texture => ("uniform sampler2D", "layout(binding = 0)"),
     };
     let rest = declared.trim_start_matches("layout(std430) ");
     let text = renamed(text, &[(declared, &format!("STUDENT_T_BINDING {rest}"))]);
@@ -142,10 +149,7 @@ fn with_default(name: &str, default: &str, text: &str) -> String {
 /// of unknown length and of a structure with that length, which none reads. They are inline, since
 /// Metal links what several files define.
 fn includable_msl(text: &str, storage: Storage, kind: Kind) -> String {
-    let array = match kind {
-        Kind::Shapes => "metal::float2",
-        Kind::Family => "uint",
-    };
+    let array = if kind == Kind::Family { "uint" } else { "metal::float2" };
     let name = text
         .split_once(&format!("typedef {array} "))
         .map(|(_, rest)| rest.split_once('[').expect("an array").0);
@@ -199,6 +203,8 @@ fn renamed(text: &str, names: &[(&str, &str)]) -> String {
 }
 
 /// Text that may be included twice.
-fn guarded(text: &str) -> String {
-    format!("#ifndef STUDENT_T\n#define STUDENT_T\n\n{}\n#endif\n", text.trim_start())
+fn guarded(text: &str, kind: Kind) -> String {
+    // Functions for real time have names of their own, and may stand beside others.
+    let name = if kind == Kind::Realtime { "STUDENT_T_REALTIME" } else { "STUDENT_T" };
+    format!("#ifndef {name}\n#define {name}\n\n{}\n#endif\n", text.trim_start())
 }

@@ -12,7 +12,8 @@ use std::process::ExitCode;
 use std::sync::LazyLock;
 
 use microfacet_export::{
-    Family, Host, Kind, Language, Shape, Storage, Target, family_shader_files, files, wgsl_crc32,
+    Family, Host, Kind, Language, Shape, Storage, Target, family_shader_files, files,
+    realtime_text, wgsl_crc32,
 };
 use microfacet_sampler::Tables;
 
@@ -25,6 +26,14 @@ const CHECKSUM: &str = "wgsl.crc32";
 /// What to do if one differs.
 const REMEDY: &str = "write all anew: cargo run --release --manifest-path clients/gpu/Cargo.toml \
     --bin translate -- --write";
+
+/// Of functions for real time, which read no storage.
+const FOR_REAL_TIME: [(&str, Language, Storage); 4] = [
+    ("realtime.glsl", Language::Glsl, Storage::Texture),
+    ("realtime_es.glsl", Language::GlslEs, Storage::Texture),
+    ("realtime.hlsl", Language::Hlsl, Storage::Texture),
+    ("realtime.metal", Language::Msl, Storage::Texture),
+];
 
 /// By name; those of a family begin with `family_`.
 const FILES: [(&str, Language, Storage); 9] = [
@@ -59,9 +68,15 @@ fn main() -> ExitCode {
         eprintln!("error: {FOLDER}/{CHECKSUM} is not that of the WGSL");
         good = false;
     }
-    let kinds = [(Kind::Shapes, ""), (Kind::Family, "family_")];
-    let all = kinds.iter().flat_map(|kind| FILES.iter().map(move |file| (kind, file)));
-    for (&(kind, prefix), &(name, language, storage)) in all {
+    let kinds = [
+        (Kind::Shapes, "", &FILES[..]),
+        (Kind::Family, "family_", &FILES),
+        (Kind::Realtime, "", &FOR_REAL_TIME),
+    ];
+    let all = kinds
+        .iter()
+        .flat_map(|&(kind, prefix, files)| files.iter().map(move |&file| (kind, prefix, file)));
+    for (kind, prefix, (name, language, storage)) in all {
         let [module, sample] = exported(Language::Wgsl, storage, kind);
         let translation = languages::translate(&module, &sample, (language, storage, kind));
         let name = format!("{prefix}{name}");
@@ -76,7 +91,7 @@ fn main() -> ExitCode {
             good = false;
         }
     }
-    let count = kinds.len() * FILES.len();
+    let count = kinds.iter().map(|(_, _, files)| files.len()).sum::<usize>();
     match (writes, good) {
         (true, _) => println!("{count} files written"),
         (false, true) => println!("{count} translations are those of the WGSL"),
@@ -91,6 +106,7 @@ fn exported(language: Language, storage: Storage, kind: Kind) -> [Vec<u8>; 2] {
     let files = match kind {
         Kind::Shapes => files(&Target::Shader(language, storage, host), &[shape()]),
         Kind::Family => family_shader_files(language, storage, &host, family()),
+        Kind::Realtime => realtime_text(language, &host),
     };
     let mut files = files.into_iter();
     [0; 2].map(|_| files.next().expect("a module and a program").contents)

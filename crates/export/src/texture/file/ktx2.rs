@@ -16,6 +16,21 @@ pub(in crate::texture) fn encode(texture: &Texture, description: Option<&str>) -
         (true, 1) => (Format::R16_SFLOAT, 2),
         (true, _) => (Format::R16G16_SFLOAT, 2),
     };
+    let [width, height, depth] = extent(texture);
+    let depth = is_volume(texture).then_some(depth);
+    let data = bytes(texture);
+    encode_texels(format, type_size, [width, height], depth, &data, description).0
+}
+
+/// Texels of a plain format, with a depth if they are a volume; also where in the file they begin.
+pub(crate) fn encode_texels(
+    format: Format,
+    type_size: u32,
+    [width, height]: [usize; 2],
+    depth: Option<usize>,
+    data: &[u8],
+    description: Option<&str>,
+) -> (Vec<u8>, usize) {
     let (basic, _) = Basic::from_format(format).expect("a plain format");
     let block = ktx2::dfd::Block::Basic(basic).to_vec();
     let descriptor = [&(block.len() as u32 + 4).to_le_bytes()[..], &block].concat();
@@ -23,21 +38,19 @@ pub(in crate::texture) fn encode(texture: &Texture, description: Option<&str>) -
     let writer = concat!("microfacet-bake ", env!("CARGO_PKG_VERSION"));
     let description = description.map(|text| entry(KEY, text)).unwrap_or_default();
     let entries = [entry("KTXwriter", writer), description].concat();
-    let data = bytes(texture);
 
     let start = Header::LENGTH + LevelIndex::LENGTH;
     let at_entries = start + descriptor.len();
-    let texel = data.len() / extent(texture).iter().product::<usize>();
+    let texel = data.len() / (width * height * depth.unwrap_or(1));
     // The level begins at a multiple of its texels' size and of four.
     let step = texel.max(4);
     let at_data = (at_entries + entries.len()).next_multiple_of(step);
-    let [width, height, depth] = extent(texture).map(|n| n as u32);
     let header = Header {
         format: Some(format),
         type_size,
-        pixel_width: width,
-        pixel_height: height,
-        pixel_depth: if is_volume(texture) { depth } else { 0 },
+        pixel_width: width as u32,
+        pixel_height: height as u32,
+        pixel_depth: depth.unwrap_or(0) as u32,
         layer_count: 0,
         face_count: 1,
         level_count: 1,
@@ -60,7 +73,7 @@ pub(in crate::texture) fn encode(texture: &Texture, description: Option<&str>) -
     let mut out = [&header.as_bytes()[..], &level.as_bytes(), &descriptor, &entries].concat();
     out.resize(at_data, 0);
     out.extend(data);
-    out
+    (out, at_data)
 }
 
 fn entry(key: &str, value: &str) -> Vec<u8> {

@@ -3,7 +3,7 @@
 mod dds;
 mod describe;
 mod header;
-pub(super) mod ktx2;
+pub(in crate::texture) mod ktx2;
 mod npy;
 
 use half::f16;
