@@ -31,14 +31,14 @@ export function launch(more = []) {
 /// Opens a page of this folder that takes three.js from npm's.
 export async function serve(browser, name) {
     const page = await browser.newPage();
-    await page.route('http://page.test/**', route => {
+    await page.route('https://page.test/**', route => {
         const { pathname } = new URL(route.request().url());
         const path = pathname.startsWith('/three/')
             ? join('node_modules/three/build', pathname.slice('/three/'.length))
             : pathname.slice(1);
         return route.fulfill({ path: join(import.meta.dirname, path) });
     });
-    await page.goto(`http://page.test/${name}`);
+    await page.goto(`https://page.test/${name}`);
     return page;
 }
 

@@ -31,15 +31,15 @@ fn parameter(declared: &str) -> &str {
 
 /// The names of the functions that read the tables, or call one that does.
 fn readers<'a>(module: &'a str, declared: &str) -> Vec<&'a str> {
-    // Functions end at a brace in the first column.
+    // Functions end at a brace in the first column, and begin with the last line there before it.
     let functions = module.split("\n}").filter_map(|text| {
-        let start = text.rfind("\n\n").map_or(0, |at| at + 2);
-        let head = text[start..].lines().find(|line| {
+        let head = text.lines().rfind(|line| {
             !line.starts_with(['/', '#', ' ']) && line.contains('(') && line != &declared
         })?;
         let (before, _) = head.split_once('(')?;
         let name = before.rsplit(' ').next()?;
-        name.starts_with("student_t_").then_some((name, &text[start..]))
+        let body = &text[text.rfind(head)?..];
+        name.starts_with("student_t_").then_some((name, body))
     });
     let functions: Vec<(&str, &str)> = functions.collect();
     let mut readers: Vec<&str> = Vec::new();
@@ -119,7 +119,7 @@ mod tests {
     fn what_reads_the_tables_takes_them_and_nothing_else_does() {
         let module = "uniform highp sampler2D student_t_tables;\n\nvec2 student_t_impl_pair(uint at) {\n    \
                       return texelFetch(student_t_tables, ivec2(at), 0).xy;\n}\n\nfloat student_t_d(float \
-                      x) {\n    return x;\n}\n\nfloat student_t_e(uint at) {\n    return \
+                      x) {\n    return x;\n}\n\nfloat student_t_e(uint at) {\n    at += 1u;\n\n    return \
                       student_t_d(student_t_impl_pair(max(at, 1u)).x);\n}\n";
         let program = "#include \"a\"\nvoid main() { student_t_d(student_t_e(2u)); }\n";
         let [module, program] = as_argument(module, program);
