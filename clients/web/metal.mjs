@@ -1,17 +1,27 @@
 // In the page: spheres of metal by three.js' standard material, with its own table of albedos or
-// with one in our coordinates, and what they return of lights from everywhere.
+// with another, and what they return of lights from everywhere.
 
 import * as THREE from 'three';
 
 /// Lights that one rendering adds up; the uniforms of every device hold as many.
 const AT_ONCE = 64;
 
-/// The function that reads a table of `export lut --channels scale-bias`, as its description says:
-/// scale and bias of Schlick's reflectance.
-function lookup({ axes_slowest_first: [along, across] }) {
-    return `
+/// The table as a texture of half floats, which every device filters.
+function texture(data, width, height, format) {
+    const numbers = new Uint16Array(data.map(THREE.DataUtils.toHalfFloat));
+    const table = new THREE.DataTexture(numbers, width, height, format, THREE.HalfFloatType);
+    table.magFilter = table.minFilter = THREE.LinearFilter;
+    table.needsUpdate = true;
+    return table;
+}
+
+/// A table of `export lut --channels scale-bias` as a texture, and the function that reads it as
+/// its description says: scale and bias of Schlick's reflectance.
+function inOurs({ axes_slowest_first: [along, across], data }) {
+    const glsl = `
         uniform sampler2D albedos;
-        vec2 scale_and_bias( float sigma, float mu ) {
+        vec2 scale_and_bias( float roughness, float mu ) {
+            float sigma = roughness * roughness;
             const vec2 texels = vec2( ${across.texels}.0, ${along.texels}.0 );
             float x = mu / ( mu + ${across.kappa.toFixed(6)} * sigma * sqrt( 1.0 - mu * mu ) );
             vec2 c = vec2( sqrt( sqrt( x ) ), sqrt( sigma / ${along.sigma_max.toFixed(6)} ) );
@@ -20,16 +30,19 @@ function lookup({ axes_slowest_first: [along, across] }) {
             float bias = e.g + e.r * square * square * rest;
             return vec2( e.r - bias, bias );
         }`;
+    return { glsl, albedos: texture(data, across.texels, along.texels, THREE.RGFormat) };
 }
 
-/// The table as a texture of half floats, which every device filters.
-function texture({ axes_slowest_first: [along, across], data }) {
-    const numbers = new Uint16Array(data.map(THREE.DataUtils.toHalfFloat));
-    const table = new THREE.DataTexture(
-        numbers, across.texels, along.texels, THREE.RGFormat, THREE.HalfFloatType);
-    table.magFilter = table.minFilter = THREE.LinearFilter;
-    table.needsUpdate = true;
-    return table;
+/// A square table of E over the coordinates of three.js, but with texels at the ends. Lamps see the
+/// sum of scale and bias alone.
+function atEnds({ texels: n, data }) {
+    const glsl = `
+        uniform sampler2D albedos;
+        vec2 scale_and_bias( float roughness, float mu ) {
+            vec2 at = vec2( roughness, mu ) * ${(n - 1) / n} + ${1 / (2 * n)};
+            return vec2( texture2D( albedos, at ).r, 0.0 );
+        }`;
+    return { glsl, albedos: texture(data, n, n, THREE.RedFormat) };
 }
 
 /// Metal whose reflectance along the normal is `color`; without a table as three.js ships it.
@@ -39,18 +52,17 @@ export function metal(color, roughness, table = null) {
         const from = 'texture2D( dfgLUT, vec2( material.roughness, dotNVms ) ).rg';
         const chunk = THREE.ShaderChunk.lights_fragment_begin;
         if (!chunk.includes(from)) throw new Error(`three.js no longer has ${from}`);
-        const to = 'scale_and_bias( material.roughness * material.roughness, dotNVms )';
-        const albedos = { value: texture(table) };
+        const to = 'scale_and_bias( material.roughness, dotNVms )';
+        const { glsl, albedos } = table.axes_slowest_first ? inOurs(table) : atEnds(table);
         material.onBeforeCompile = shader => {
-            shader.uniforms.albedos = albedos;
+            shader.uniforms.albedos = { value: albedos };
             shader.fragmentShader = shader.fragmentShader
-                .replace('void main()', `${lookup(table)}\nvoid main()`)
+                .replace('void main()', `${glsl}\nvoid main()`)
                 .replace('#include <lights_fragment_begin>', chunk.replace(from, to));
         };
         // Programs are shared by this key, which does not see what the function closes over.
-        const texels = table.axes_slowest_first.map(axis => axis.texels);
-        material.customProgramCacheKey = () => `albedos of ${texels}`;
-        material.addEventListener('dispose', () => albedos.value.dispose());
+        material.customProgramCacheKey = () => glsl;
+        material.addEventListener('dispose', () => albedos.dispose());
     }
     return material;
 }
@@ -110,8 +122,10 @@ export function furnace(material, view, [width, height], count = 8192) {
 }
 
 /// The same from the middle of the sphere to its edge, with the cosine of each view. The lights lie
-/// evenly about the view, so that all of the picture is this line, turned: far more lights than for
-/// a picture take no longer, and smooth metal needs them, whose lobe must hold many.
+/// evenly about the view, so that the picture is this line, turned: far more lights than for all of
+/// it take no longer, and smooth metal needs them, whose lobe must hold many. Where the cosine is
+/// below 0.2 this is rough: there three.js adds to the roughness what the normal turns by within
+/// squares of four pixels, which differ along the edge.
 export function line(material, width, count) {
     const half = 0.5 / width;
     const values = furnace(material, [0, 1, half, -half], [width, 1], count);
