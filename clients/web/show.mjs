@@ -16,9 +16,9 @@ if (!table) {
 }
 
 const server = createServer(async ({ url }, response) => {
-    // Parsing an address resolves its dots, so that it names nothing above the folder.
-    const { pathname } = new URL(url, 'http://localhost');
     try {
+        // Parsing an address resolves its dots, so that it names nothing above the folder.
+        const { pathname } = new URL(url, 'http://localhost');
         const contents = await readFile(file(pathname === '/' ? '/spheres.html' : pathname, table));
         response.setHeader('Content-Type', KINDS[extname(pathname) || '.html'] ?? 'text/plain');
         response.end(contents);
