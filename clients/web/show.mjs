@@ -1,5 +1,5 @@
-// Shows spheres of metal by three.js with its own table of albedos and with ours, in a browser of
-// this machine, until it is stopped: node show.mjs lut.json [port]
+// Shows spheres of metal by three.js with its own table of albedos and with ours, in a browser on
+// the same computer, until it is stopped: node show.mjs lut.json [port]
 
 import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';

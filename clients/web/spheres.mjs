@@ -69,13 +69,15 @@ function element(parent, name, text = '') {
 }
 
 /// The cells of both rows of a section, by row and roughness.
-function rows(section) {
-    const table = element(document.getElementById(section), 'table');
-    const head = element(element(table, 'thead'), 'tr');
+function rows(section, table) {
+    const texels = table.axes_slowest_first.map(axis => axis.texels).join(' × ');
+    const grid = element(document.getElementById(section), 'table');
+    const head = element(element(grid, 'thead'), 'tr');
     element(head, 'th', 'roughness').scope = 'col';
     for (const roughness of ROUGHNESS) element(head, 'th', roughness).scope = 'col';
-    const body = element(table, 'tbody');
-    return [['three.js', 'as it ships'], ['our table', '32 × 32 halves']].map(([name, what]) => {
+    const body = element(grid, 'tbody');
+    const both = [['three.js', 'as it ships'], ['our table', `${texels} halves`]];
+    return both.map(([name, what]) => {
         const row = element(body, 'tr'), head = element(row, 'th', name);
         head.scope = 'row';
         element(head, 'small', what);
@@ -101,7 +103,7 @@ async function draw() {
         of.classList.toggle('strong', Math.abs(deviation) === FULL);
     }
     const ours = await (await fetch('/table.json')).json();
-    const [furnaces, lamps] = ['furnace', 'lamp'].map(rows);
+    const [furnaces, lamps] = ['furnace', 'lamp'].map(section => rows(section, ours));
     for (const [i, roughness] of ROUGHNESS.entries()) {
         const [own, other] = [null, ours].map(table =>
             lamp(metal(GOLD, roughness, table), DIRECTION, INTENSITY, SIDE));
@@ -125,4 +127,7 @@ async function draw() {
     document.documentElement.dataset.drawn = 'true';
 }
 
-draw();
+draw().catch(error => {
+    element(document.querySelector('main'), 'p', `${error}`).setAttribute('role', 'alert');
+    throw error;
+});
