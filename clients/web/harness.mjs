@@ -4,6 +4,7 @@ import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { chromium } from 'playwright-core';
+import { file } from './files.mjs';
 
 /// Where `run` wrote the pages and the pictures of the crate.
 export const FOLDER = process.env.PAGES ?? '.';
@@ -28,15 +29,13 @@ export function launch(more = []) {
     return chromium.launch({ executablePath, args: [...FLAGS, ...more] });
 }
 
-/// Opens a page of this folder that takes three.js from npm's.
-export async function serve(browser, name) {
-    const page = await browser.newPage();
+/// Opens a page of this folder that takes three.js from npm's, and a table of albedos.
+export async function serve(browser, name, options = {}) {
+    const { table = join(FOLDER, 'lut', 'lut.json'), ...others } = options;
+    const page = await browser.newPage(others);
     await page.route('https://page.test/**', route => {
         const { pathname } = new URL(route.request().url());
-        const path = pathname.startsWith('/three/')
-            ? join('node_modules/three/build', pathname.slice('/three/'.length))
-            : pathname.slice(1);
-        return route.fulfill({ path: join(import.meta.dirname, path) });
+        return route.fulfill({ path: file(pathname, table) });
     });
     await page.goto(`https://page.test/${name}`);
     return page;
