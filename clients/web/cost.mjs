@@ -33,8 +33,8 @@ const ggx = [
     taken(lights, 'float D_GGX_Anisotropic('),
 ].join('\n');
 
-const surface = `StudentTSurface s = StudentTSurface(x[0].xy, x[0].z, x[0].w, x[1].x, x[1].y, x[1].z,
-    x[2].xy);
+const surface = `StudentTSurface s = StudentTSurface(x[0].xy, x[0].z, x[0].w, x[1].x, x[1].y,
+    x[1].z, x[2].xy);
     vec3 v = x[3].xyz, l = x[4].xyz, m = x[5].xyz, f0 = x[6].xyz;`;
 const area = (w) => `student_t_surface_area(s, ${w},
     textureLod(masking, student_t_surface_masking_at(s, ${w}), 0.0).x)`;
@@ -50,7 +50,8 @@ const rows = [
     ['a light, round', ggx, `vec3 v = x[3].xyz, l = x[4].xyz, h = normalize(l + v);
     float a = pow2(max(x[0].x, 0.045)), nl = saturate(l.z), nv = saturate(v.z);
     float nh = saturate(h.z), vh = saturate(dot(v, h));
-    y[0].xyz = F_Schlick(x[6].xyz, 1.0, vh) * (V_GGX_SmithCorrelated(a, nl, nv) * D_GGX(a, nh)) * nl;`],
+    float vis = V_GGX_SmithCorrelated(a, nl, nv);
+    y[0].xyz = F_Schlick(x[6].xyz, 1.0, vh) * (vis * D_GGX(a, nh)) * nl;`],
     ['a light, anisotropic', ggx, `vec3 v = x[3].xyz, l = x[4].xyz, h = normalize(l + v);
     float a = pow2(max(x[0].x, 0.045)), nl = saturate(l.z), nv = saturate(v.z);
     float nh = saturate(h.z), vh = saturate(dot(v, h)), t = max(x[0].y, a);
@@ -96,10 +97,11 @@ const rows = [
 
 /** Operations of one component that an instruction stands for, n its components: additions,
  * products, comparisons and the like, and those that devices compute more slowly. */
-const plain = /^Op(F(Add|Sub|Mul|Negate|Ord.*|Unord.*)|I(Add|Sub|Mul|Equal|NotEqual)|[SU](Less|Greater).*|Select|Logical.*|Shift.*|Bitwise.*|Not|Convert.*|VectorTimesScalar)$/;
+const plain = new RegExp('^Op(F(Add|Sub|Mul|Negate|Ord.*|Unord.*)|I(Add|Sub|Mul|Equal|NotEqual)'
+    + '|[SU](Less|Greater).*|Select|Logical.*|Shift.*|Bitwise.*|Not|Convert.*|VectorTimesScalar)$');
 const extended = {
-    FAbs: [1, 0], FMin: [1, 0], FMax: [1, 0], UMin: [1, 0], UMax: [1, 0], SMin: [1, 0], SMax: [1, 0],
-    FClamp: [2, 0], NMin: [1, 0], NMax: [1, 0], NClamp: [2, 0], UClamp: [2, 0], SClamp: [2, 0],
+    FAbs: [1, 0], FMin: [1, 0], FMax: [1, 0], UMin: [1, 0], UMax: [1, 0], SMin: [1, 0],
+    SMax: [1, 0], FClamp: [2, 0], UClamp: [2, 0], SClamp: [2, 0],
     Floor: [1, 0], Fract: [1, 0], FMix: [3, 0], Fma: [1, 0], FSign: [1, 0],
     Sqrt: [0, 1], InverseSqrt: [0, 1], Exp: [1, 1], Exp2: [0, 1], Log: [1, 1], Log2: [0, 1],
     Pow: [1, 2], Sin: [0, 1], Cos: [0, 1],

@@ -45,8 +45,10 @@ function kit() {
 /// The largest difference of two pictures, in steps of 8 bits, and what share of pixels are lit.
 async function difference(gamma, sigma, of_kit = gamma) {
     const [light, metal] = [[0.48, 0.6, 0.64], [0.95, 0.64, 0.54]];
-    const draw = (what, gamma) =>
-        page.evaluate(what => window.draw(what), { ...what, uniforms: { gamma, sigma, light, metal } });
+    const draw = (what, gamma) => {
+        const uniforms = { gamma, sigma, light, metal };
+        return page.evaluate(what => window.draw(what), { ...what, uniforms });
+    };
     const [a, b] = [await draw(exact(gamma), gamma), await draw(kit(), of_kit)];
     const lit = a.filter((x, i) => i % 4 === 0 && x > 8).length / (a.length / 4);
     // Beside the sphere one has no opacity.

@@ -7,6 +7,7 @@ use std::fs;
 use crate::common::{names, ok, refused, run};
 use crate::{colours, image, json};
 use glam::Vec3;
+use microfacet_export::{Host, Language, realtime_text};
 use microfacet_sampler::{Masking, MicrofacetDistribution, Tables};
 use microfacet_tables::axis::LogRoughness;
 
@@ -165,7 +166,7 @@ fn other_sets_are_exported_with_what_they_lack() {
 fn bad_requests_are_refused_with_a_remedy_and_write_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    let cases: [(&[&str], &[&str]); 16] = [
+    let cases: [(&[&str], &[&str]); 19] = [
         (&["wgsl", "--gamma", "3", "--tables", "nowhere"], &["nowhere", "no such file", "bake"]),
         (&["cobol", "--gamma", "3"], &["cobol", "they are c, wgsl, glsl, glsl-es, hlsl"]),
         (&["c", "--gamma", "3", "--textures"], &["--textures"]),
@@ -176,6 +177,9 @@ fn bad_requests_are_refused_with_a_remedy_and_write_nothing() {
         (&["hlsl", "--gamma", "3", "--argument"], &["leave out --argument"]),
         (&["hlsl", "--gamma", "3", "--import-path", "a"], &["leave out --import-path"]),
         (&["wgsl", "--gamma", "3", "--import-path", "a b"], &["'a b'", "must be names"]),
+        (&["spirv", "--realtime"], &["SPIR-V has no functions", "export wgsl"]),
+        (&["wgsl", "--realtime", "--gamma", "3"], &["--realtime", "--gamma"]),
+        (&["wgsl", "--realtime", "--binding", "1"], &["--realtime", "--binding"]),
         (&["wgsl", "--gamma", "1.5001"], &["1.5001", "below 1.501", "raise"]),
         (&["c", "--gamma", "1.5"], &["(1.5, inf]"]),
         (&["c", "--gamma", "1.5001"], &["1.5001", "below 1.501", "raise"]),
@@ -296,6 +300,90 @@ fn every_language_has_all_functions_a_sample_and_data() {
     assert_eq!(words[..4], 0x0723_0203_u32.to_le_bytes());
     let entry = b"reflect_views";
     assert!(words.windows(entry.len()).any(|window| window == entry));
+}
+
+/// Functions of the kit for real time.
+const REALTIME_FUNCTIONS: [&str; 14] = [
+    "student_t_surface(",
+    "student_t_surface_d(",
+    "student_t_surface_masking_at(",
+    "student_t_surface_albedo_at(",
+    "student_t_surface_area(",
+    "student_t_surface_eval(",
+    "student_t_surface_pdf(",
+    "student_t_schlick(",
+    "student_t_f82_tint(",
+    "student_t_schlick_average(",
+    "student_t_f82_tint_average(",
+    "student_t_schlick_albedo(",
+    "student_t_f82_tint_albedo(",
+    "student_t_further_bounces(",
+];
+
+#[test]
+fn the_kit_for_real_time_has_functions_and_textures() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    ok(at, &["export", "wgsl", "--realtime", "--import-path", "kit", "--out", "out"]);
+    let out = at.join("out");
+    let ends = ["_albedo.ktx2", "_masking.ktx2", "_sample.wgsl", ".json", ".wgsl"];
+    let mut files = ends.map(|end| format!("student_t_realtime{end}"));
+    files.sort();
+    assert_eq!(names(&out), files);
+    let module = fs::read_to_string(out.join("student_t_realtime.wgsl")).unwrap();
+    assert!(module.starts_with("#define_import_path kit\n"));
+
+    // The texels are where the description says, and begin and end as they must.
+    let told = json(&out.join("student_t_realtime.json"));
+    let texels = |name: &str| {
+        let one = &told["textures"][name];
+        let number = |key: &str| one[key].as_u64().unwrap() as usize;
+        let bytes = fs::read(out.join(one["file"].as_str().unwrap())).unwrap();
+        let of_level = ktx2::Reader::new(&bytes[..]).unwrap().levels().next().unwrap().data.len();
+        let texels = bytes[number("offset")..][..number("bytes")].to_vec();
+        assert_eq!(texels.len(), of_level);
+        assert_eq!(bytes.len(), number("offset") + of_level);
+        let halves = texels.chunks_exact(2).map(|two| half::f16::from_le_bytes([two[0], two[1]]));
+        let size: Vec<u64> =
+            one["size"].as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).collect();
+        (size, halves.map(f32::from).collect::<Vec<f32>>())
+    };
+    let (size, masking) = texels("masking");
+    assert_eq!((&size[..], masking.len()), (&[64, 32][..], 64 * 32));
+    // At the normal Λ = 0, for every gamma.
+    assert!(masking.chunks(64).all(|row| row[63] == 0.25));
+    let (size, albedo) = texels("albedo");
+    assert_eq!((&size[..], albedo.len()), (&[48, 32, 32][..], 4 * 48 * 32 * 32));
+    // Of the roughest Beckmann, from the normal, as the crate has it; and of a mirror nothing.
+    let exact = Tables::embedded().family_albedo(Masking::HeightCorrelated).unwrap();
+    let at = exact.at(1.0, f32::INFINITY);
+    let texel = &albedo[4 * (48 * 31 + 47)..][..4];
+    assert!((texel[0].powi(2) - at.lost(Vec3::Z)).abs() < 1e-3, "{texel:?}");
+    assert!((texel[3].powi(2) - at.lost_average()).abs() < 1e-3, "{texel:?}");
+    assert!(albedo[4 * 47..][..4].iter().all(|x| x.abs() < 1e-3));
+
+    // The other languages have the same functions, and programs.
+    for language in [
+        Language::Wgsl,
+        Language::Glsl,
+        Language::GlslEs,
+        Language::Hlsl,
+        Language::Msl,
+        Language::Slang,
+    ] {
+        let mut files = realtime_text(language, &Host::default()).into_iter();
+        let [module, sample] =
+            [0; 2].map(|_| String::from_utf8(files.next().unwrap().contents).unwrap());
+        for function in REALTIME_FUNCTIONS {
+            assert!(module.matches(function).count() >= 2, "{language:?}: {function}");
+        }
+        let code: String = module.lines().filter(|line| !line.starts_with("//")).collect();
+        for foreign in ["naga", "impl_entry", "_group_", "main(", "#version", "sampler"] {
+            assert!(!code.contains(foreign), "{language:?}: {foreign}");
+        }
+        assert!(module.is_ascii() && sample.is_ascii() && sample.lines().count() <= 60);
+        assert!(sample.contains("student_t_further_bounces("), "{language:?}");
+    }
 }
 
 #[test]

@@ -32,7 +32,7 @@ fn student_t_surface(gamma: f32, sigma: vec2f) -> StudentTSurface {
     // Below its limit D is Beckmann's to 1e-3 of its peak.
     let s = max(2.0 * heavy / (1.0 + heavy), 5e-4);
     // 1/log2(1 + 17/(2 * 1.6 - 3)).
-    let shape = 0.15561132 * log2(1.0 + 17.0 * heavy);
+    let shape = 0.1556114 * log2(1.0 + 17.0 * heavy);
     return StudentTSurface(
         a,
         s,
@@ -109,10 +109,10 @@ fn student_t_schlick_average(f0: vec3f, f90: f32) -> vec3f {
     return f0 + (f90 - f0) * (1.0 / 21.0);
 }
 
-// What OpenPBR's tint of a metal, its reflectance at 82 degrees over that of Schlick's with F90 = 1,
-// takes away from it at the peak of cos theta (1 - cos theta)^6, at 1/7.
+// What OpenPBR's tint of a metal, its reflectance at 82 degrees over that of Schlick's with F90 of
+// 1, takes away from it at the peak of cos theta (1 - cos theta)^6, at 1/7.
 fn student_t_impl_untinted(f0: vec3f, tint: vec3f) -> vec3f {
-    return (1.0 - tint) * (f0 + (1.0 - f0) * 0.46266436);
+    return (1.0 - tint) * (f0 + (1.0 - f0) * 0.46266437);
 }
 
 // The reflectance of a metal by F0 and by that tint.

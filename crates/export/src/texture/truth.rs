@@ -82,7 +82,7 @@ pub struct Truth {
     pub bias: f64,
     /// The moment of OpenPBR's tint at 82°, over its peak.
     pub tint: f64,
-    /// The bias and the moment of the tint of a mirror, (1−μ)⁵ and 7⁷/6⁶ μ(1−μ)⁶, or their averages.
+    /// The bias and the moment of the tint of a mirror, (1−μ)⁵ and 7⁷/6⁶ μ(1−μ)⁶, or averages.
     pub mirror: [f64; 2],
 }
 

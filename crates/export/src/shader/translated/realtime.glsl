@@ -22,7 +22,7 @@ StudentTSurface student_t_surface(float gamma, vec2 sigma) {
     float area = (a.x * a.y);
     float stand_in = sqrt(area);
     float s = max(((2.0 * heavy) / (1.0 + heavy)), 0.0005);
-    float shape = (0.15561132 * log2((1.0 + (17.0 * heavy))));
+    float shape = (0.1556114 * log2((1.0 + (17.0 * heavy))));
     float _e51 = student_t_impl_texel(sqrt(min(stand_in, 1.0)), 32.0);
     float _e53 = student_t_impl_texel(shape, 32.0);
     return StudentTSurface(a, s, (1.0 - (1.0 / s)), (0.3183099 / area), kappa, ((kappa + 2.5) * stand_in), vec2(_e51, _e53));

@@ -34,7 +34,7 @@ inline StudentTSurface student_t_surface(
     float area = a.x * a.y;
     float stand_in = metal::sqrt(area);
     float s = metal::max((2.0 * heavy) / (1.0 + heavy), 0.0005);
-    float shape = 0.15561132 * metal::log2(1.0 + (17.0 * heavy));
+    float shape = 0.1556114 * metal::log2(1.0 + (17.0 * heavy));
     float _e51 = student_t_impl_texel(metal::sqrt(metal::min(stand_in, 1.0)), 32.0);
     float _e53 = student_t_impl_texel(shape, 32.0);
     return StudentTSurface {a, s, 1.0 - (1.0 / s), 0.3183099 / area, kappa, (kappa + 2.5) * stand_in, {}, metal::float2(_e51, _e53)};
