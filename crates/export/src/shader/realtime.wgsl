@@ -56,7 +56,7 @@ fn student_t_surface_d(surface: StudentTSurface, m: vec3f) -> f32 {
     let b = square + surface.s * dot(x, x);
     // (1 + s tan^2 theta/sigma^2)^(2 - gamma).
     let tail = exp2(surface.power * log2(b / square));
-    return select(0.0, 1.0, m.z > 0.0) * surface.peak / (b * b) * tail;
+    return select(0.0, surface.peak, m.z > 0.0) / (b * b) * tail;
 }
 
 // Where the texture of masking has a direction.

@@ -50,7 +50,7 @@ float student_t_surface_d(StudentTSurface surface, float3 m)
     float square = max((m.z * m.z), 1e-24);
     float b = (square + (surface.s * dot(x_1, x_1)));
     float tail = exp2((surface.power * log2((b / square))));
-    return (((((m.z > 0.0) ? 1.0 : 0.0) * surface.peak) / (b * b)) * tail);
+    return ((((m.z > 0.0) ? surface.peak : 0.0) / (b * b)) * tail);
 }
 
 float2 student_t_surface_masking_at(StudentTSurface surface_1, float3 w)

@@ -48,7 +48,7 @@ inline float student_t_surface_d(
     float square = metal::max(m.z * m.z, 0.000000000000000000000001);
     float b = square + (surface.s * metal::dot(x_1, x_1));
     float tail = metal::exp2(surface.power * metal::log2(b / square));
-    return ((((m.z > 0.0) ? 1.0 : 0.0) * surface.peak) / (b * b)) * tail;
+    return (((m.z > 0.0) ? surface.peak : 0.0) / (b * b)) * tail;
 }
 
 inline metal::float2 student_t_surface_masking_at(
