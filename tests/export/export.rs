@@ -387,6 +387,22 @@ fn the_kit_for_real_time_has_functions_and_textures() {
 }
 
 #[test]
+fn the_kit_needs_a_set_that_covers_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let recipe = "[[material]]\nname = \"a\"\nsigma = { min = 0.01, max = 0.5 }\n\
+                  gamma = { min = 1.8, max = 4.0 }\nfresnel = \"mirror\"\n\
+                  masking = \"height-correlated\"\n";
+    fs::write(at.join("a.toml"), recipe).unwrap();
+    ok(at, &["bake", "a.toml", "--out", "set", "--quality", "draft"]);
+    let message = refused(at, &["export", "glsl", "--realtime", "--tables", "set", "--out", "out"]);
+    for part in ["gamma = 1.6", "sigma [0.01, 0.5]", "gamma [1.8, 4]", "bake"] {
+        assert!(message.contains(part), "{part}: {message}");
+    }
+    assert!(!at.join("out").exists());
+}
+
+#[test]
 fn shaders_have_tables_where_the_host_says() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();

@@ -7,6 +7,7 @@ use half::f16;
 use ktx2::Format;
 use microfacet_core::Masking;
 use microfacet_model::{ParameterError, Shape};
+use microfacet_sampler::port::VolumeTables;
 use microfacet_sampler::{MaterialError, Tables};
 use microfacet_tables::axis::LogShape;
 use microfacet_tables::crc32;
@@ -41,13 +42,24 @@ pub struct Realtime {
 }
 
 impl Realtime {
-    /// Makes the textures: masking from the model, and albedos fitted to those of a set's family
-    /// under height-correlated masking. Takes seconds.
+    /// Makes the textures, whose texels are exact: masking of the model, and albedos of a set's
+    /// family under height-correlated masking. Takes seconds.
     ///
     /// # Errors
-    /// [`MaterialError`] for a set without albedos of a range of shapes.
+    /// [`MaterialError`] for a set without albedos of all these γ and σ.
     pub fn bake(tables: &Tables) -> Result<Self, MaterialError> {
         let family = tables.family_albedo(Masking::HeightCorrelated)?;
+        let VolumeTables { shapes: [least, most], sigmas: [_, largest], .. } =
+            VolumeTables::new(&family);
+        // Beyond what it covers a family would return its last, without a word.
+        let heaviest = (2.0 * GAMMA_MIN - 3.0) as f32;
+        if least > 1.0001 * heaviest || most < 1e4 || largest < SIGMA_MAX as f32 {
+            let ends = [GAMMA_MIN, f64::INFINITY];
+            let lacks = |gamma| tables.albedo(SIGMA_MAX, gamma, Masking::HeightCorrelated).err();
+            let (sigma, gamma, nearest) = (SIGMA_MAX, GAMMA_MIN, None);
+            let other = MaterialError::AlbedoNotCovered { sigma, gamma, nearest };
+            return Err(ends.into_iter().find_map(lacks).unwrap_or(other));
+        }
         let spec = spec();
         let truth = |place: &Place| {
             let at = family.at(place.sigma as f32, place.gamma as f32);
