@@ -51,7 +51,8 @@ impl Realtime {
         let family = tables.family_albedo(Masking::HeightCorrelated)?;
         let VolumeTables { shapes: [least, most], sigmas: [_, largest], .. } =
             VolumeTables::new(&family);
-        // Beyond what it covers a family would return its last, without a word.
+        // Beyond what it covers a family would return its last, without a word. 2γ−3 of a set that
+        // begins at this γ is rounded, and that of infinity any large number.
         let heaviest = (2.0 * GAMMA_MIN - 3.0) as f32;
         if least > 1.0001 * heaviest || most < 1e4 || largest < SIGMA_MAX as f32 {
             let ends = [GAMMA_MIN, f64::INFINITY];
@@ -182,7 +183,7 @@ fn area(shape: &Shape, z: f64) -> f64 {
 }
 
 /// The texture of albedos without their averages.
-fn spec() -> TextureSpec {
+pub(crate) fn spec() -> TextureSpec {
     let (shapes, masking) = (Shapes::DownTo(GAMMA_MIN), Masking::HeightCorrelated);
     let [views, _] = TextureSpec::of_shapes("", shapes, SIGMA_MAX, &ALBEDO, masking, Channels::E);
     let channels = vec![Channel::RootLost, Channel::Excess, Channel::TintExcess];

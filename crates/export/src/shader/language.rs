@@ -104,8 +104,7 @@ impl Language {
     fn translation_for_real_time(self) -> Option<&'static [u8]> {
         Some(match self {
             Self::Wgsl | Self::Slang => return None,
-            Self::GlslEs => include_bytes!("translated/realtime_es.glsl"),
-            Self::Glsl => include_bytes!("translated/realtime.glsl"),
+            Self::Glsl | Self::GlslEs => include_bytes!("translated/realtime.glsl"),
             Self::Hlsl => include_bytes!("translated/realtime.hlsl"),
             Self::Msl => include_bytes!("translated/realtime.metal"),
             Self::SpirV => panic!("functions for real time are no program"),

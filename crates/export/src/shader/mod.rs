@@ -232,6 +232,7 @@ mod tests {
     use super::super::family::Block;
     use super::super::numbers::single;
     use super::super::realtime;
+    use super::super::texture::Along;
     use super::*;
 
     #[test]
@@ -273,13 +274,17 @@ mod tests {
             let line = format!("const STUDENT_T_{name} = {texels}.0;\n");
             assert!(real_time.contains(&line), "{line}");
         }
+        let Along::View(view) = realtime::spec().axes[2].along else { panic!("views come last") };
+        // Both κ have the same part of heavy tails.
+        assert_eq!(view.heavy, realtime::kappa(2.0) - realtime::kappa(f64::INFINITY));
         let axis = 1.0 / LogShape::BAKED.coordinate(realtime::GAMMA_MIN) * std::f64::consts::LN_2;
         let constants = [
             format!("let shape = {} * log2(1.0 + 17.0 * heavy);", single(axis as f32)),
             format!("let kappa = {0:?} + {0:?} * heavy;", realtime::kappa(f64::INFINITY)),
             format!("clamp(gamma, {:?}, 1e6)", realtime::GAMMA_MIN),
+            format!("(kappa + {:?}) * stand_in", view.scale - realtime::kappa(f64::INFINITY)),
             format!("* {});\n", single((6.0 / 7.0_f64).powi(5) as f32)),
-            format!("let peak = {} * cos_theta", single(F82_SCALE as f32)),
+            format!("fourth * k, {} * c * fourth", single(F82_SCALE as f32)),
             format!("- {} * student_t_impl_untinted", single(F82_AVERAGE as f32)),
         ];
         for constant in constants {
@@ -290,6 +295,25 @@ mod tests {
         let texel = format!("at & {mask}u), i32(at >> {shift}u)");
         for text in [include_str!("texture.wgsl"), include_str!("family_texture.wgsl")] {
             assert!(width.is_power_of_two() && text.contains(&texel));
+        }
+    }
+
+    #[test]
+    fn the_kit_for_real_time_has_names_of_its_own() {
+        let names = |text: &str| -> Vec<String> {
+            let declared = text.lines().filter(|line| {
+                ["fn ", "struct ", "const "].iter().any(|word| line.starts_with(word))
+            });
+            let name = |line: &str| line.split([' ', '(', ':']).nth(1).unwrap().into();
+            declared.map(name).collect()
+        };
+        let others =
+            names(&[FUNCTIONS, OF_SHAPES, OF_FAMILY, include_str!("closed.wgsl")].concat());
+        assert!(others.len() > 80 && others.contains(&"student_t_closed_d".into()));
+        let kit = names(include_str!("realtime.wgsl"));
+        assert!(kit.contains(&"STUDENT_T_VIEWS".into()) && kit.len() > 20, "{kit:?}");
+        for name in kit {
+            assert!(!others.contains(&name), "{name}");
         }
     }
 

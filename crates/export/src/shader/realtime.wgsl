@@ -98,29 +98,32 @@ fn student_t_surface_pdf(surface: StudentTSurface, m: vec3f, area_v: f32) -> f32
 
 // ---- Reflectance --------------------------------------------------------------------------------
 
+// (1 - c)^5 of Schlick's reflectance, and c (1 - c)^6 over its peak, at 1/7.
+fn student_t_impl_weights(c: f32) -> vec2f {
+    let k = 1.0 - c;
+    let fourth = (k * k) * (k * k);
+    return vec2f(fourth * k, 17.651384 * c * fourth * (k * k));
+}
+
+// What OpenPBR's tint of a metal, its reflectance at 82 degrees over that of Schlick's with F90 of
+// 1, takes away from it at that peak.
+fn student_t_impl_untinted(f0: vec3f, tint: vec3f) -> vec3f {
+    return (1.0 - tint) * (f0 + (1.0 - f0) * 0.46266437);
+}
+
 // Schlick's reflectance.
 fn student_t_schlick(f0: vec3f, f90: f32, cos_theta: f32) -> vec3f {
-    let k = 1.0 - cos_theta;
-    let fourth = (k * k) * (k * k);
-    return f0 + (f90 - f0) * (fourth * k);
+    return f0 + (f90 - f0) * student_t_impl_weights(cos_theta).x;
 }
 
 fn student_t_schlick_average(f0: vec3f, f90: f32) -> vec3f {
     return f0 + (f90 - f0) * (1.0 / 21.0);
 }
 
-// What OpenPBR's tint of a metal, its reflectance at 82 degrees over that of Schlick's with F90 of
-// 1, takes away from it at the peak of cos theta (1 - cos theta)^6, at 1/7.
-fn student_t_impl_untinted(f0: vec3f, tint: vec3f) -> vec3f {
-    return (1.0 - tint) * (f0 + (1.0 - f0) * 0.46266437);
-}
-
 // The reflectance of a metal by F0 and by that tint.
 fn student_t_f82_tint(f0: vec3f, tint: vec3f, cos_theta: f32) -> vec3f {
-    let k = 1.0 - cos_theta;
-    let fourth = (k * k) * (k * k);
-    let peak = 17.651384 * cos_theta * fourth * (k * k);
-    let raw = f0 + (1.0 - f0) * (fourth * k) - student_t_impl_untinted(f0, tint) * peak;
+    let w = student_t_impl_weights(cos_theta);
+    let raw = f0 + (1.0 - f0) * w.x - student_t_impl_untinted(f0, tint) * w.y;
     return max(raw, vec3f(0.0));
 }
 
@@ -138,23 +141,23 @@ fn student_t_surface_albedo_at(surface: StudentTSurface, cos_theta: f32) -> vec3
     return vec3f(student_t_impl_texel(sqrt(sqrt(x)), STUDENT_T_VIEWS), surface.rows);
 }
 
+// E, bias and F82 of a texel: beside what is stored, E has the share of a mirror.
+fn student_t_impl_of_texel(texel: vec4f, cos_theta: f32) -> vec3f {
+    let e = 1.0 - texel.x * texel.x;
+    let w = e * student_t_impl_weights(clamp(cos_theta, 0.0, 1.0));
+    return vec3f(e, clamp(texel.y + w.x, 0.0, e), max(texel.z + w.y, 0.0));
+}
+
 // The directional albedo of one bounce under Schlick's reflectance.
 fn student_t_schlick_albedo(texel: vec4f, f0: vec3f, f90: f32, cos_theta: f32) -> vec3f {
-    let e = 1.0 - texel.x * texel.x;
-    let k = 1.0 - clamp(cos_theta, 0.0, 1.0);
-    let fourth = (k * k) * (k * k);
-    return f0 * e + (f90 - f0) * clamp(texel.y + e * (fourth * k), 0.0, e);
+    let moments = student_t_impl_of_texel(texel, cos_theta);
+    return f0 * moments.x + (f90 - f0) * moments.y;
 }
 
 // The same of a metal with a tint.
 fn student_t_f82_tint_albedo(texel: vec4f, f0: vec3f, tint: vec3f, cos_theta: f32) -> vec3f {
-    let e = 1.0 - texel.x * texel.x;
-    let c = clamp(cos_theta, 0.0, 1.0);
-    let k = 1.0 - c;
-    let fourth = (k * k) * (k * k);
-    let f82 = max(texel.z + e * (17.651384 * c * fourth * (k * k)), 0.0);
-    let bias = clamp(texel.y + e * (fourth * k), 0.0, e);
-    return f0 * e + (1.0 - f0) * bias - student_t_impl_untinted(f0, tint) * f82;
+    let dip = student_t_impl_untinted(f0, tint) * student_t_impl_of_texel(texel, cos_theta).z;
+    return student_t_schlick_albedo(texel, f0, 1.0, cos_theta) - dip;
 }
 
 // f of all bounces after the first, without the cosine (Kulla & Conty 2017): `view` is what the

@@ -59,8 +59,7 @@ fn text(wgsl: &str, language: Language, storage: Storage, kind: Kind) -> String 
         Language::GlslEs => {
             let version = glsl::Version::Embedded { version: 300, is_webgl: true };
             let text = glsl(&module, &info, version, ShaderStage::Fragment);
-            let name = [("_group_0_binding_0_fs", "student_t_tables")];
-            let text = if kind == Kind::Realtime { text } else { renamed(&text, &name) };
+            let text = renamed(&text, &[("_group_0_binding_0_fs", "student_t_tables")]);
             without_lines(&text, &["#version", "precision "]).trim_start().into()
         }
         Language::Hlsl => {

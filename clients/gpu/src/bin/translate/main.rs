@@ -27,10 +27,9 @@ const CHECKSUM: &str = "wgsl.crc32";
 const REMEDY: &str = "write all anew: cargo run --release --manifest-path clients/gpu/Cargo.toml \
     --bin translate -- --write";
 
-/// Of functions for real time, which read no storage.
-const FOR_REAL_TIME: [(&str, Language, Storage); 4] = [
+/// Of functions for real time, which read no storage; GLSL ES has those of GLSL.
+const FOR_REAL_TIME: [(&str, Language, Storage); 3] = [
     ("realtime.glsl", Language::Glsl, Storage::Texture),
-    ("realtime_es.glsl", Language::GlslEs, Storage::Texture),
     ("realtime.hlsl", Language::Hlsl, Storage::Texture),
     ("realtime.metal", Language::Msl, Storage::Texture),
 ];

@@ -37,15 +37,15 @@ float student_t_surface_d(StudentTSurface surface, vec3 m) {
 }
 
 vec2 student_t_surface_masking_at(StudentTSurface surface_1, vec3 w) {
-    float c = max(w.z, 0.0);
-    float q = (c / (c + (surface_1.kappa * length((surface_1.sigma * w.xy)))));
+    float c_1 = max(w.z, 0.0);
+    float q = (c_1 / (c_1 + (surface_1.kappa * length((surface_1.sigma * w.xy)))));
     float _e14 = student_t_impl_texel(q, 64.0);
     return vec2(_e14, surface_1.rows.y);
 }
 
 float student_t_surface_area(StudentTSurface surface_2, vec3 w_1, float texel) {
-    float c_1 = max(w_1.z, 0.0);
-    float simple = (c_1 + (surface_2.kappa * length((surface_2.sigma * w_1.xy))));
+    float c_2 = max(w_1.z, 0.0);
+    float simple = (c_2 + (surface_2.kappa * length((surface_2.sigma * w_1.xy))));
     return (simple * (0.75 + texel));
 }
 
@@ -62,26 +62,29 @@ float student_t_surface_pdf(StudentTSurface surface_4, vec3 m_2, float area_v_1)
     return ((0.25 * _e3) / area_v_1);
 }
 
-vec3 student_t_schlick(vec3 f0_, float f90_, float cos_theta) {
-    float k = (1.0 - cos_theta);
+vec2 student_t_impl_weights(float c) {
+    float k = (1.0 - c);
     float fourth = ((k * k) * (k * k));
-    return (f0_ + ((vec3(f90_) - f0_) * (fourth * k)));
+    return vec2((fourth * k), (((17.651384 * c) * fourth) * (k * k)));
 }
 
-vec3 student_t_schlick_average(vec3 f0_1, float f90_1) {
-    return (f0_1 + ((vec3(f90_1) - f0_1) * 0.04761905));
+vec3 student_t_impl_untinted(vec3 f0_, vec3 tint) {
+    return ((vec3(1.0) - tint) * (f0_ + ((vec3(1.0) - f0_) * 0.46266437)));
 }
 
-vec3 student_t_impl_untinted(vec3 f0_2, vec3 tint) {
-    return ((vec3(1.0) - tint) * (f0_2 + ((vec3(1.0) - f0_2) * 0.46266437)));
+vec3 student_t_schlick(vec3 f0_1, float f90_, float cos_theta) {
+    vec2 _e5 = student_t_impl_weights(cos_theta);
+    return (f0_1 + ((vec3(f90_) - f0_1) * _e5.x));
+}
+
+vec3 student_t_schlick_average(vec3 f0_2, float f90_1) {
+    return (f0_2 + ((vec3(f90_1) - f0_2) * 0.04761905));
 }
 
 vec3 student_t_f82_tint(vec3 f0_3, vec3 tint_1, float cos_theta_1) {
-    float k_1 = (1.0 - cos_theta_1);
-    float fourth_1 = ((k_1 * k_1) * (k_1 * k_1));
-    float peak = (((17.651384 * cos_theta_1) * fourth_1) * (k_1 * k_1));
-    vec3 _e19 = student_t_impl_untinted(f0_3, tint_1);
-    vec3 raw = ((f0_3 + ((vec3(1.0) - f0_3) * (fourth_1 * k_1))) - (_e19 * peak));
+    vec2 _e3 = student_t_impl_weights(cos_theta_1);
+    vec3 _e10 = student_t_impl_untinted(f0_3, tint_1);
+    vec3 raw = ((f0_3 + ((vec3(1.0) - f0_3) * _e3.x)) - (_e10 * _e3.y));
     return max(raw, vec3(0.0));
 }
 
@@ -92,28 +95,30 @@ vec3 student_t_f82_tint_average(vec3 f0_4, vec3 tint_2) {
 }
 
 vec3 student_t_surface_albedo_at(StudentTSurface surface_5, float cos_theta_2) {
-    float c_2 = clamp(cos_theta_2, 1e-12, 1.0);
-    float x_2 = (c_2 / (c_2 + (surface_5.stretch * sqrt((1.0 - (c_2 * c_2))))));
+    float c_3 = clamp(cos_theta_2, 1e-12, 1.0);
+    float x_2 = (c_3 / (c_3 + (surface_5.stretch * sqrt((1.0 - (c_3 * c_3))))));
     float _e16 = student_t_impl_texel(sqrt(sqrt(x_2)), 48.0);
     return vec3(_e16, surface_5.rows);
 }
 
-vec3 student_t_schlick_albedo(vec4 texel_1, vec3 f0_5, float f90_2, float cos_theta_3) {
+vec3 student_t_impl_of_texel(vec4 texel_1, float cos_theta_3) {
     float e = (1.0 - (texel_1.x * texel_1.x));
-    float k_2 = (1.0 - clamp(cos_theta_3, 0.0, 1.0));
-    float fourth_2 = ((k_2 * k_2) * (k_2 * k_2));
-    return ((f0_5 * e) + ((vec3(f90_2) - f0_5) * clamp((texel_1.y + (e * (fourth_2 * k_2))), 0.0, e)));
+    vec2 _e10 = student_t_impl_weights(clamp(cos_theta_3, 0.0, 1.0));
+    vec2 w_2 = (e * _e10);
+    return vec3(e, clamp((texel_1.y + w_2.x), 0.0, e), max((texel_1.z + w_2.y), 0.0));
 }
 
-vec3 student_t_f82_tint_albedo(vec4 texel_2, vec3 f0_6, vec3 tint_3, float cos_theta_4) {
-    float e_1 = (1.0 - (texel_2.x * texel_2.x));
-    float c_3 = clamp(cos_theta_4, 0.0, 1.0);
-    float k_3 = (1.0 - c_3);
-    float fourth_3 = ((k_3 * k_3) * (k_3 * k_3));
-    float f82_ = max((texel_2.z + (e_1 * (((17.651384 * c_3) * fourth_3) * (k_3 * k_3)))), 0.0);
-    float bias = clamp((texel_2.y + (e_1 * (fourth_3 * k_3))), 0.0, e_1);
-    vec3 _e39 = student_t_impl_untinted(f0_6, tint_3);
-    return (((f0_6 * e_1) + ((vec3(1.0) - f0_6) * bias)) - (_e39 * f82_));
+vec3 student_t_schlick_albedo(vec4 texel_2, vec3 f0_5, float f90_2, float cos_theta_4) {
+    vec3 _e4 = student_t_impl_of_texel(texel_2, cos_theta_4);
+    return ((f0_5 * _e4.x) + ((vec3(f90_2) - f0_5) * _e4.y));
+}
+
+vec3 student_t_f82_tint_albedo(vec4 texel_3, vec3 f0_6, vec3 tint_3, float cos_theta_5) {
+    vec3 _e4 = student_t_impl_untinted(f0_6, tint_3);
+    vec3 _e5 = student_t_impl_of_texel(texel_3, cos_theta_5);
+    vec3 dip = (_e4 * _e5.z);
+    vec3 _e9 = student_t_schlick_albedo(texel_3, f0_6, 1.0, cos_theta_5);
+    return (_e9 - dip);
 }
 
 vec3 student_t_further_bounces(vec4 view, float light, vec3 average) {

@@ -55,8 +55,8 @@ inline metal::float2 student_t_surface_masking_at(
     StudentTSurface surface_1,
     metal::float3 w
 ) {
-    float c = metal::max(w.z, 0.0);
-    float q = c / (c + (surface_1.kappa * metal::length(surface_1.sigma * w.xy)));
+    float c_1 = metal::max(w.z, 0.0);
+    float q = c_1 / (c_1 + (surface_1.kappa * metal::length(surface_1.sigma * w.xy)));
     float _e14 = student_t_impl_texel(q, 64.0);
     return metal::float2(_e14, surface_1.rows.y);
 }
@@ -66,8 +66,8 @@ inline float student_t_surface_area(
     metal::float3 w_1,
     float texel
 ) {
-    float c_1 = metal::max(w_1.z, 0.0);
-    float simple = c_1 + (surface_2.kappa * metal::length(surface_2.sigma * w_1.xy));
+    float c_2 = metal::max(w_1.z, 0.0);
+    float simple = c_2 + (surface_2.kappa * metal::length(surface_2.sigma * w_1.xy));
     return simple * (0.75 + texel);
 }
 
@@ -95,28 +95,35 @@ inline float student_t_surface_pdf(
     return (0.25 * _e3) / area_v_1;
 }
 
-inline metal::float3 student_t_schlick(
-    metal::float3 f0_,
-    float f90_,
-    float cos_theta
+inline metal::float2 student_t_impl_weights(
+    float c
 ) {
-    float k = 1.0 - cos_theta;
+    float k = 1.0 - c;
     float fourth = (k * k) * (k * k);
-    return f0_ + ((metal::float3(f90_) - f0_) * (fourth * k));
-}
-
-inline metal::float3 student_t_schlick_average(
-    metal::float3 f0_1,
-    float f90_1
-) {
-    return f0_1 + ((metal::float3(f90_1) - f0_1) * 0.04761905);
+    return metal::float2(fourth * k, ((17.651384 * c) * fourth) * (k * k));
 }
 
 inline metal::float3 student_t_impl_untinted(
-    metal::float3 f0_2,
+    metal::float3 f0_,
     metal::float3 tint
 ) {
-    return (metal::float3(1.0) - tint) * (f0_2 + ((metal::float3(1.0) - f0_2) * 0.46266437));
+    return (metal::float3(1.0) - tint) * (f0_ + ((metal::float3(1.0) - f0_) * 0.46266437));
+}
+
+inline metal::float3 student_t_schlick(
+    metal::float3 f0_1,
+    float f90_,
+    float cos_theta
+) {
+    metal::float2 _e5 = student_t_impl_weights(cos_theta);
+    return f0_1 + ((metal::float3(f90_) - f0_1) * _e5.x);
+}
+
+inline metal::float3 student_t_schlick_average(
+    metal::float3 f0_2,
+    float f90_1
+) {
+    return f0_2 + ((metal::float3(f90_1) - f0_2) * 0.04761905);
 }
 
 inline metal::float3 student_t_f82_tint(
@@ -124,11 +131,9 @@ inline metal::float3 student_t_f82_tint(
     metal::float3 tint_1,
     float cos_theta_1
 ) {
-    float k_1 = 1.0 - cos_theta_1;
-    float fourth_1 = (k_1 * k_1) * (k_1 * k_1);
-    float peak = ((17.651384 * cos_theta_1) * fourth_1) * (k_1 * k_1);
-    metal::float3 _e19 = student_t_impl_untinted(f0_3, tint_1);
-    metal::float3 raw = (f0_3 + ((metal::float3(1.0) - f0_3) * (fourth_1 * k_1))) - (_e19 * peak);
+    metal::float2 _e3 = student_t_impl_weights(cos_theta_1);
+    metal::float3 _e10 = student_t_impl_untinted(f0_3, tint_1);
+    metal::float3 raw = (f0_3 + ((metal::float3(1.0) - f0_3) * _e3.x)) - (_e10 * _e3.y);
     return metal::max(raw, metal::float3(0.0));
 }
 
@@ -145,38 +150,43 @@ inline metal::float3 student_t_surface_albedo_at(
     StudentTSurface surface_5,
     float cos_theta_2
 ) {
-    float c_2 = metal::clamp(cos_theta_2, 0.000000000001, 1.0);
-    float x_2 = c_2 / (c_2 + (surface_5.stretch * metal::sqrt(1.0 - (c_2 * c_2))));
+    float c_3 = metal::clamp(cos_theta_2, 0.000000000001, 1.0);
+    float x_2 = c_3 / (c_3 + (surface_5.stretch * metal::sqrt(1.0 - (c_3 * c_3))));
     float _e16 = student_t_impl_texel(metal::sqrt(metal::sqrt(x_2)), 48.0);
     return metal::float3(_e16, surface_5.rows);
 }
 
-inline metal::float3 student_t_schlick_albedo(
+inline metal::float3 student_t_impl_of_texel(
     metal::float4 texel_1,
-    metal::float3 f0_5,
-    float f90_2,
     float cos_theta_3
 ) {
     float e = 1.0 - (texel_1.x * texel_1.x);
-    float k_2 = 1.0 - metal::clamp(cos_theta_3, 0.0, 1.0);
-    float fourth_2 = (k_2 * k_2) * (k_2 * k_2);
-    return (f0_5 * e) + ((metal::float3(f90_2) - f0_5) * metal::clamp(texel_1.y + (e * (fourth_2 * k_2)), 0.0, e));
+    metal::float2 _e10 = student_t_impl_weights(metal::clamp(cos_theta_3, 0.0, 1.0));
+    metal::float2 w_2 = e * _e10;
+    return metal::float3(e, metal::clamp(texel_1.y + w_2.x, 0.0, e), metal::max(texel_1.z + w_2.y, 0.0));
+}
+
+inline metal::float3 student_t_schlick_albedo(
+    metal::float4 texel_2,
+    metal::float3 f0_5,
+    float f90_2,
+    float cos_theta_4
+) {
+    metal::float3 _e4 = student_t_impl_of_texel(texel_2, cos_theta_4);
+    return (f0_5 * _e4.x) + ((metal::float3(f90_2) - f0_5) * _e4.y);
 }
 
 inline metal::float3 student_t_f82_tint_albedo(
-    metal::float4 texel_2,
+    metal::float4 texel_3,
     metal::float3 f0_6,
     metal::float3 tint_3,
-    float cos_theta_4
+    float cos_theta_5
 ) {
-    float e_1 = 1.0 - (texel_2.x * texel_2.x);
-    float c_3 = metal::clamp(cos_theta_4, 0.0, 1.0);
-    float k_3 = 1.0 - c_3;
-    float fourth_3 = (k_3 * k_3) * (k_3 * k_3);
-    float f82_ = metal::max(texel_2.z + (e_1 * (((17.651384 * c_3) * fourth_3) * (k_3 * k_3))), 0.0);
-    float bias = metal::clamp(texel_2.y + (e_1 * (fourth_3 * k_3)), 0.0, e_1);
-    metal::float3 _e39 = student_t_impl_untinted(f0_6, tint_3);
-    return ((f0_6 * e_1) + ((metal::float3(1.0) - f0_6) * bias)) - (_e39 * f82_);
+    metal::float3 _e4 = student_t_impl_untinted(f0_6, tint_3);
+    metal::float3 _e5 = student_t_impl_of_texel(texel_3, cos_theta_5);
+    metal::float3 dip = _e4 * _e5.z;
+    metal::float3 _e9 = student_t_schlick_albedo(texel_3, f0_6, 1.0, cos_theta_5);
+    return _e9 - dip;
 }
 
 inline metal::float3 student_t_further_bounces(
