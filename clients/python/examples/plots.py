@@ -67,7 +67,9 @@ def samples(axes: Axes) -> None:
         theta = np.arccos(np.minimum(lobe.sample_visible_normal(v, u)[:, 2], 1.0))
         count, _ = np.histogram(theta, edges, density=True)
         axes.stairs(count, np.degrees(edges), color=colour, alpha=0.4, fill=True)
-        density = 2 * math.pi * lobe.visible_normal_pdf(v, m).mean(axis=1) * np.sin(middle)
+        # In double precision: sums of float32 along an axis lose digits.
+        mean = lobe.visible_normal_pdf(v, m).mean(axis=1, dtype=float)
+        density = 2 * math.pi * mean * np.sin(middle)
         axes.plot(np.degrees(middle), density, colour)
     axes.set(title="a million visible normals (areas) and\ntheir density (lines), view at 60°")
     axes.set_ylim(0, 3)

@@ -1,15 +1,19 @@
 //! Complete materials.
 
 use pyo3::basic::CompareOp;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyEllipsis, PySlice, PyTuple};
+use pyo3::types::{PyDict, PyEllipsis, PySlice, PyTuple};
 
 use microfacet_sampler::{
-    AnyBsdf, Bsdf, Conductor, ConductorFresnel, Dielectric, Event, Lobe, Metal, Plastic,
+    AnyBsdf, Bsdf, BsdfSample, Conductor, ConductorFresnel, Dielectric, Event, Lobe, Plastic,
 };
 
-use crate::arrays::{Any, Cost, Input, each2, each3};
+use crate::arrays::{Any, Input};
+use crate::broadcast::{Cost, One, each};
+use crate::distribution::Kind;
 use crate::lobe::PyLobe;
+use crate::material::{Material, of};
 use crate::words::{self, refused, unbound};
 
 /// A bidirectional scattering distribution function in three channels.
@@ -20,13 +24,13 @@ use crate::words::{self, refused, unbound};
 /// paths from the camera, which refraction scales by (n_v/n_l)^2, or "importance".
 #[pyclass(name = "Bsdf", module = "microfacet", subclass, frozen)]
 pub(crate) struct PyBsdf {
-    bsdf: AnyBsdf,
+    bsdf: Material,
     about: String,
 }
 
 impl PyBsdf {
     pub(crate) fn new(bsdf: impl Into<AnyBsdf>, about: String) -> Self {
-        Self { bsdf: bsdf.into(), about }
+        Self { bsdf: Material::of(bsdf), about }
     }
 }
 
@@ -59,16 +63,28 @@ impl PySample {
 impl PyBsdf {
     /// f(v, l), shape (..., 3), without the cosine.
     #[pyo3(signature = (v, l, transport="radiance"))]
-    fn eval<'py>(&self, v: &Any<'py>, l: &Any<'py>, transport: &str) -> PyResult<Any<'py>> {
+    fn eval<'py>(
+        &self,
+        py: Python<'py>,
+        v: &Any<'py>,
+        l: &Any<'py>,
+        transport: &str,
+    ) -> PyResult<Any<'py>> {
         let mode = words::transport(transport)?;
-        let (v, l) = (Input::new("v", v)?, Input::new("l", l)?);
-        each2(&v, &l, Cost::Lookup, |v: [f32; 3], l: [f32; 3]| self.bsdf.eval(v, l, mode))
+        let (v, l) = (Input::directions("v", v)?, Input::directions("l", l)?);
+        of!(&self.bsdf, all => each(py, (all, &v, &l), Cost::Lookup, |(bsdf, v, l)| {
+            let (v, l): ([f32; 3], [f32; 3]) = (v, l);
+            bsdf.eval(v, l, mode)
+        }))
     }
 
     /// The density with which sample draws l for v, per steradian.
-    fn pdf<'py>(&self, v: &Any<'py>, l: &Any<'py>) -> PyResult<Any<'py>> {
-        let (v, l) = (Input::new("v", v)?, Input::new("l", l)?);
-        each2(&v, &l, Cost::Lookup, |v: [f32; 3], l: [f32; 3]| [self.bsdf.pdf(v, l)])
+    fn pdf<'py>(&self, py: Python<'py>, v: &Any<'py>, l: &Any<'py>) -> PyResult<Any<'py>> {
+        let (v, l) = (Input::directions("v", v)?, Input::directions("l", l)?);
+        of!(&self.bsdf, all => each(py, (all, &v, &l), Cost::Lookup, |(bsdf, v, l)| {
+            let (v, l): ([f32; 3], [f32; 3]) = (v, l);
+            [bsdf.pdf(v, l)]
+        }))
     }
 
     /// Draws lights for views v from uniform numbers: u, shape (..., 2), for the direction and
@@ -83,18 +99,13 @@ impl PyBsdf {
         transport: &str,
     ) -> PyResult<PySample> {
         let mode = words::transport(transport)?;
-        let (v, choice) = (Input::new("v", v)?, Input::new("choice", choice)?);
+        let (v, choice) = (Input::directions("v", v)?, Input::new("choice", choice)?);
         let u = Input::new("u", u)?;
-        let draw = |v: [f32; 3], [choice]: [f32; 1], u: [f32; 2]| {
-            let Some((sample, pdf)) = self.bsdf.sample_with_pdf(v, choice, u, mode) else {
-                return [0.0; 10];
-            };
-            let ([x, y, z], [r, g, b]) = (sample.l, sample.weight);
-            let [other, delta] = [sample.event == Event::Transmission, sample.delta]
-                .map(|flag| f32::from(u8::from(flag)));
-            [x, y, z, r, g, b, pdf, sample.eta, other, delta]
-        };
-        let all = each3(&v, &choice, &u, Cost::Lookup, draw)?;
+        let all = of!(&self.bsdf, all => {
+            each(py, (all, &v, &choice, &u), Cost::Lookup, |(bsdf, v, [choice], u)| {
+                drawn(bsdf.sample_with_pdf(v, choice, u, mode))
+            })
+        })?;
         // Columns are copied: a view of the array would keep all ten, and its sums would round
         // more.
         let column = |index: Any<'py>| -> PyResult<Py<PyAny>> {
@@ -116,8 +127,11 @@ impl PyBsdf {
 
     /// Whether all events are deltas, so that eval is 0 everywhere.
     #[getter]
-    fn is_delta(&self) -> bool {
-        Bsdf::<3>::is_delta(&self.bsdf)
+    fn is_delta<'py>(&self, py: Python<'py>) -> PyResult<Any<'py>> {
+        let flags = of!(&self.bsdf, all => each(py, all, Cost::Lookup, |bsdf| {
+            [f32::from(u8::from(bsdf.is_delta()))]
+        }));
+        flags?.rich_compare(0, CompareOp::Ne)
     }
 
     fn __repr__(&self) -> &str {
@@ -139,9 +153,13 @@ pub(crate) struct PyConductor {}
 impl PyConductor {
     #[new]
     #[pyo3(signature = (lobe, *, f0=None, f82=None, eta=None, k=None, metal=None,
-                        masking="height-correlated", compensation="none", stand_in=false))]
+                        masking="height-correlated", compensation="none", stand_in=false,
+                        **others),
+           text_signature = "(lobe, *, f0=None, f82=None, eta=None, k=None, metal=None, \
+                             masking='height-correlated', compensation='none', stand_in=False)")]
     #[expect(clippy::too_many_arguments, reason = "by keyword")]
     fn new(
+        py: Python<'_>,
         lobe: &Bound<'_, PyLobe>,
         f0: Option<&Any>,
         f82: Option<&Any>,
@@ -151,13 +169,12 @@ impl PyConductor {
         masking: &str,
         compensation: &str,
         stand_in: bool,
+        others: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<PyClassInitializer<Self>> {
+        words::lead_on("Conductor", others)?;
         let fresnel: ConductorFresnel = match (metal, eta, k, f0, f82) {
             (None, None, None, None, None) => ConductorFresnel::mirror(),
-            (Some(metal), None, None, None, None) => {
-                let why = |why| refused(format!("metal \"{metal}\": {why}"));
-                metal.parse::<Metal>().map_err(why)?.into()
-            }
+            (Some(metal), None, None, None, None) => words::metal(py, metal)?.into(),
             (None, Some(eta), Some(k), None, None) => {
                 ConductorFresnel::exact(words::colour("eta", eta)?, words::colour("k", k)?)
                     .map_err(unbound)?
@@ -177,10 +194,20 @@ impl PyConductor {
             }
         };
         let about = format!("Conductor({})", lobe.repr()?);
-        let PyLobe { lobe, tables } = lobe.get();
-        let settings = words::settings(masking, compensation, tables, stand_in)?;
-        let conductor = Conductor::new(Lobe::clone(lobe), fresnel, settings).map_err(unbound)?;
-        Ok(PyClassInitializer::from(PyBsdf::new(conductor, about)).add_subclass(Self {}))
+        let PyLobe { kind, set, .. } = lobe.get();
+        let bsdf = match kind {
+            Kind::Family(lobes) => {
+                let masking = words::masking(masking)?;
+                let compensation = words::compensation(compensation)?;
+                Material::conductor(lobes, set, fresnel, masking, compensation, stand_in)?
+            }
+            _ => {
+                let settings = words::settings(masking, compensation, set, stand_in)?;
+                let lobe = Lobe::clone(lobe.get().one()?);
+                Material::of(Conductor::new(lobe, fresnel, settings).map_err(unbound)?)
+            }
+        };
+        Ok(PyClassInitializer::from(PyBsdf { bsdf, about }).add_subclass(Self {}))
     }
 }
 
@@ -194,20 +221,35 @@ pub(crate) struct PyDielectric {}
 #[pymethods]
 impl PyDielectric {
     #[new]
-    #[pyo3(signature = (lobe, eta, *, masking="height-correlated", compensation="none",
-                        stand_in=false))]
+    #[pyo3(signature = (lobe, eta=None, *, masking="height-correlated", compensation="none",
+                        stand_in=false, **others),
+           text_signature = "(lobe, eta, *, masking='height-correlated', compensation='none', \
+                             stand_in=False)")]
     fn new(
         lobe: &Bound<'_, PyLobe>,
-        eta: f64,
+        eta: Option<f64>,
         masking: &str,
         compensation: &str,
         stand_in: bool,
+        others: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<PyClassInitializer<Self>> {
+        words::lead_on("Dielectric", others)?;
+        let eta = words::index(eta)?;
         let about = format!("Dielectric({}, eta={eta})", lobe.repr()?);
-        let PyLobe { lobe, tables } = lobe.get();
-        let settings = words::settings(masking, compensation, tables, stand_in)?;
-        let dielectric = Dielectric::new(Lobe::clone(lobe), eta, settings).map_err(unbound)?;
-        Ok(PyClassInitializer::from(PyBsdf::new(dielectric, about)).add_subclass(Self {}))
+        let PyLobe { kind, set, .. } = lobe.get();
+        let bsdf = match kind {
+            Kind::Family(lobes) => {
+                let masking = words::masking(masking)?;
+                let compensation = words::compensation(compensation)?;
+                Material::dielectric(lobes, set, eta, masking, compensation, stand_in)?
+            }
+            _ => {
+                let settings = words::settings(masking, compensation, set, stand_in)?;
+                let lobe = Lobe::clone(lobe.get().one()?);
+                Material::of(Dielectric::new(lobe, eta, settings).map_err(unbound)?)
+            }
+        };
+        Ok(PyClassInitializer::from(PyBsdf { bsdf, about }).add_subclass(Self {}))
     }
 }
 
@@ -220,21 +262,46 @@ pub(crate) struct PyPlastic {}
 #[pymethods]
 impl PyPlastic {
     #[new]
-    #[pyo3(signature = (lobe, eta, base, *, masking="height-correlated", compensation="none",
-                        stand_in=false))]
+    #[pyo3(signature = (lobe, eta=None, base=None, *, masking="height-correlated",
+                        compensation="none", stand_in=false, **others),
+           text_signature = "(lobe, eta, base, *, masking='height-correlated', \
+                             compensation='none', stand_in=False)")]
     fn new(
         lobe: &Bound<'_, PyLobe>,
-        eta: f64,
-        base: &Any,
+        eta: Option<f64>,
+        base: Option<&Any>,
         masking: &str,
         compensation: &str,
         stand_in: bool,
+        others: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<PyClassInitializer<Self>> {
+        words::lead_on("Plastic", others)?;
+        let eta = words::index(eta)?;
+        let base = base.ok_or_else(|| PyTypeError::new_err("base is missing: a colour"))?;
         let about = format!("Plastic({}, eta={eta})", lobe.repr()?);
-        let PyLobe { lobe, tables } = lobe.get();
-        let settings = words::settings(masking, compensation, tables, stand_in)?;
         let base = words::reflectance("base", base)?;
-        let plastic = Plastic::new(Lobe::clone(lobe), eta, base, settings).map_err(unbound)?;
-        Ok(PyClassInitializer::from(PyBsdf::new(plastic, about)).add_subclass(Self {}))
+        let PyLobe { kind, set, .. } = lobe.get();
+        let bsdf = match kind {
+            Kind::Family(lobes) => {
+                let masking = words::masking(masking)?;
+                let compensation = words::compensation(compensation)?;
+                Material::plastic(lobes, set, eta, base, masking, compensation, stand_in)?
+            }
+            _ => {
+                let settings = words::settings(masking, compensation, set, stand_in)?;
+                let lobe = Lobe::clone(lobe.get().one()?);
+                Material::of(Plastic::new(lobe, eta, base, settings).map_err(unbound)?)
+            }
+        };
+        Ok(PyClassInitializer::from(PyBsdf { bsdf, about }).add_subclass(Self {}))
     }
+}
+
+/// A sample, its density and its event in numbers: zeros of a path that ends.
+fn drawn(sample: Option<(BsdfSample, f32)>) -> [f32; 10] {
+    let Some((sample, pdf)) = sample else { return [0.0; 10] };
+    let ([x, y, z], [r, g, b]) = (sample.l, sample.weight);
+    let [other, delta] =
+        [sample.event == Event::Transmission, sample.delta].map(|flag| f32::from(u8::from(flag)));
+    [x, y, z, r, g, b, pdf, sample.eta, other, delta]
 }

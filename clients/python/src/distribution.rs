@@ -3,44 +3,63 @@
 use std::sync::Arc;
 
 use microfacet_model::{Ellipsoid, MicrofacetDistribution as _, StudentT};
-use microfacet_sampler::lobe::Batch as _;
+use microfacet_sampler::lobe::{Batch as _, Roughness};
 use microfacet_sampler::{Lobe, MicrofacetDistribution as _};
 use numpy::Element;
 use pyo3::prelude::*;
 
-use crate::arrays::{Any, Cost, Input, Number, each, each2, map, map2};
+use crate::arrays::{Any, Input, Number};
+use crate::broadcast::{Argument, Chunks, Cost, One, each, map, map2};
+use crate::surface::{Lobes, Surface};
 use crate::words::{self, refused};
 
-/// A lobe by tables, in single precision, or by the model, in double precision.
+/// A lobe or lobes by tables, in single precision, or by the model, in double precision.
+#[derive(Clone)]
 pub(crate) enum Kind {
     Tables(Arc<Lobe>),
-    Exact(Model),
+    Family(Arc<Lobes>),
+    Exact(StudentT),
+    ExactFamily(Arc<Surface>),
+    Tilted(Box<Ellipsoid>),
 }
 
-/// A member of the family, or one seen through a matrix.
-#[derive(Clone)]
-pub(crate) enum Model {
-    Family(StudentT),
-    Skewed(Box<Ellipsoid>),
+/// A lobe of the model, of roughness and shape that were checked.
+pub(crate) fn student_t(sigma: [f64; 2], gamma: f64) -> StudentT {
+    StudentT::new(Roughness(sigma), gamma).expect("roughness and shape were checked")
 }
 
-/// Calls a function of either lobe, whose vectors the conversion given makes of three numbers; of
-/// tables by an expression of their own, where one is given.
+/// Calls a function of lobes of any kind, an argument as others, whose vectors the conversion given
+/// makes of three numbers.
 macro_rules! of {
-    ($kind:expr, $lobe:ident, $to:ident => $call:expr) => {
-        of!($kind, $lobe => {
-            let $to = std::convert::identity::<[f32; 3]>;
+    ($kind:expr, $lobes:ident, $to:ident => $call:expr) => {
+        of!($kind, One(lobe) => {
+            let ($lobes, $to) = (One(lobe), std::convert::identity::<[f32; 3]>);
             $call
-        }, $lobe => {
-            let $to = |v: [f64; 3]| v.into();
-            $call
-        })
+        }, $lobes, $to => $call)
     };
-    ($kind:expr, $tables:ident => $batch:expr, $lobe:ident => $call:expr) => {
+    ($kind:expr, One($lobe:ident) => $one:expr, $lobes:ident, $to:ident => $call:expr) => {
         match $kind {
-            Kind::Tables($tables) => $batch,
-            Kind::Exact(Model::Family($lobe)) => $call,
-            Kind::Exact(Model::Skewed($lobe)) => $call,
+            Kind::Tables($lobe) => {
+                let $lobe = &**$lobe;
+                $one
+            }
+            Kind::Family(all) => {
+                let $lobes = all.surface.at(|sigma, gamma| all.lobe(sigma, gamma));
+                let $to = std::convert::identity::<[f32; 3]>;
+                $call
+            }
+            Kind::Exact(lobe) => {
+                let ($lobes, $to) = (One(lobe), |v: [f64; 3]| v.into());
+                $call
+            }
+            Kind::ExactFamily(surface) => {
+                let ($lobes, $to) = (surface.at(student_t), |v: [f64; 3]| v.into());
+                $call
+            }
+            Kind::Tilted(lobe) => {
+                let ($lobes, $to) = (One(&**lobe), |v: [f64; 3]| v.into());
+                $call
+            }
         }
     };
 }
@@ -63,29 +82,34 @@ impl PyDistribution {
     /// The normal distribution function D(m), per steradian.
     ///
     /// D(m) (m.n) integrates to 1 over all m; 0 for an m at or below the horizon.
-    fn d<'py>(&self, m: &Any<'py>) -> PyResult<Any<'py>> {
-        of!(&self.kind, lobe, to => {
-            each(&Input::new("m", m)?, Cost::Lookup, |m: [_; 3]| [lobe.d(to(m))])
+    fn d<'py>(&self, py: Python<'py>, m: &Any<'py>) -> PyResult<Any<'py>> {
+        of!(&self.kind, lobes, to => {
+            let m = Input::directions("m", m)?;
+            each(py, (lobes, &m), Cost::Lookup, |(lobe, m): (_, [_; 3])| [lobe.d(to(m))])
         })
     }
 
     /// Smith's masking G1(v), in [0, 1]; 0 at and below the horizon.
-    fn g1<'py>(&self, v: &Any<'py>) -> PyResult<Any<'py>> {
+    fn g1<'py>(&self, py: Python<'py>, v: &Any<'py>) -> PyResult<Any<'py>> {
         of!(&self.kind,
-            lobe => {
-                let g1 = |v: &[[f32; 3]], g1: &mut [[f32; 1]]| {
+            One(lobe) => {
+                let v = Input::directions("v", v)?;
+                map(py, &v, |v: &[[f32; 3]], g1: &mut [[f32; 1]]| {
                     lobe.g1_batch(v, g1.as_flattened_mut()).expect("as many of each");
-                };
-                map(&Input::new("v", v)?, Cost::Lookup, g1)
+                })
             },
-            lobe => each(&Input::new("v", v)?, Cost::Lookup, |v: [_; 3]| [lobe.g1(v.into())])
+            lobes, to => {
+                let v = Input::directions("v", v)?;
+                each(py, (lobes, &v), Cost::Lookup, |(lobe, v): (_, [_; 3])| [lobe.g1(to(v))])
+            }
         )
     }
 
     /// Smith's Lambda(v) = 1/G1 - 1; infinite at and below the horizon.
-    fn lambda_<'py>(&self, v: &Any<'py>) -> PyResult<Any<'py>> {
-        of!(&self.kind, lobe, to => {
-            each(&Input::new("v", v)?, Cost::Lookup, |v: [_; 3]| [lobe.lambda(to(v))])
+    fn lambda_<'py>(&self, py: Python<'py>, v: &Any<'py>) -> PyResult<Any<'py>> {
+        of!(&self.kind, lobes, to => {
+            let v = Input::directions("v", v)?;
+            each(py, (lobes, &v), Cost::Lookup, |(lobe, v): (_, [_; 3])| [lobe.lambda(to(v))])
         })
     }
 
@@ -94,12 +118,19 @@ impl PyDistribution {
     /// masking is "height-correlated", 1/(1 + Lambda(v) + Lambda(l)), or "uncorrelated",
     /// G1(v) G1(l).
     #[pyo3(signature = (v, l, masking="height-correlated"))]
-    fn g2<'py>(&self, v: &Any<'py>, l: &Any<'py>, masking: &str) -> PyResult<Any<'py>> {
+    fn g2<'py>(
+        &self,
+        py: Python<'py>,
+        v: &Any<'py>,
+        l: &Any<'py>,
+        masking: &str,
+    ) -> PyResult<Any<'py>> {
         let form = words::masking(masking)?;
-        of!(&self.kind, lobe, to => {
-            let (v, l) = (Input::new("v", v)?, Input::new("l", l)?);
-            let g2 = |v: [_; 3], l: [_; 3]| [lobe.g2(to(v), to(l), form)];
-            each2(&v, &l, Cost::Lookup, g2)
+        of!(&self.kind, lobes, to => {
+            let (v, l) = (Input::directions("v", v)?, Input::directions("l", l)?);
+            each(py, (lobes, &v, &l), Cost::Lookup, |(lobe, v, l): (_, [_; 3], [_; 3])| {
+                [lobe.g2(to(v), to(l), form)]
+            })
         })
     }
 
@@ -107,30 +138,45 @@ impl PyDistribution {
     ///
     /// u in [0, 1] is clamped to it. m is of unit length and above the horizon, and v.m >= 0 for
     /// a view from above.
-    fn sample_visible_normal<'py>(&self, v: &Any<'py>, u: &Any<'py>) -> PyResult<Any<'py>> {
+    #[allow(clippy::useless_conversion, reason = "the model has a vector of its own")]
+    fn sample_visible_normal<'py>(
+        &self,
+        py: Python<'py>,
+        v: &Any<'py>,
+        u: &Any<'py>,
+    ) -> PyResult<Any<'py>> {
+        let cost = match &self.kind {
+            Kind::Tables(_) | Kind::Family(_) => Cost::Lookup,
+            _ => Cost::Quadrature,
+        };
         of!(&self.kind,
-            lobe => {
-                let (v, u) = (Input::new("v", v)?, Input::new("u", u)?);
-                let sample = |v: &[[f32; 3]], u: &[[f32; 2]], m: &mut [[f32; 3]]| {
+            One(lobe) => {
+                let (v, u) = (Input::directions("v", v)?, Input::new("u", u)?);
+                map2(py, &v, &u, |v: &[[f32; 3]], u: &[[f32; 2]], m: &mut [[f32; 3]]| {
                     lobe.sample_batch(v, u, m).expect("as many of each");
-                };
-                map2(&v, &u, Cost::Lookup, sample)
+                })
             },
-            lobe => {
-                let (v, u) = (Input::new("v", v)?, Input::new("u", u)?);
-                let sample =
-                    |v: [_; 3], u: [_; 2]| lobe.sample_visible_normal(v.into(), u).to_array();
-                each2(&v, &u, Cost::Quadrature, sample)
+            lobes, to => {
+                let (v, u) = (Input::directions("v", v)?, Input::new("u", u)?);
+                each(py, (lobes, &v, &u), cost, |(lobe, v, u): (_, [_; 3], [_; 2])| {
+                    lobe.sample_visible_normal(to(v), u).into()
+                })
             }
         )
     }
 
     /// The density of visible normals, G1(v) max(0, v.m) D(m)/(v.n), per steradian of m.
-    fn visible_normal_pdf<'py>(&self, v: &Any<'py>, m: &Any<'py>) -> PyResult<Any<'py>> {
-        of!(&self.kind, lobe, to => {
-            let (v, m) = (Input::new("v", v)?, Input::new("m", m)?);
-            let pdf = |v: [_; 3], m: [_; 3]| [lobe.visible_normal_pdf(to(v), to(m))];
-            each2(&v, &m, Cost::Lookup, pdf)
+    fn visible_normal_pdf<'py>(
+        &self,
+        py: Python<'py>,
+        v: &Any<'py>,
+        m: &Any<'py>,
+    ) -> PyResult<Any<'py>> {
+        of!(&self.kind, lobes, to => {
+            let (v, m) = (Input::directions("v", v)?, Input::directions("m", m)?);
+            each(py, (lobes, &v, &m), Cost::Lookup, |(lobe, v, m): (_, [_; 3], [_; 3])| {
+                [lobe.visible_normal_pdf(to(v), to(m))]
+            })
         })
     }
 
@@ -139,15 +185,17 @@ impl PyDistribution {
     #[pyo3(signature = (v, l, masking="height-correlated"))]
     fn reflection_weight<'py>(
         &self,
+        py: Python<'py>,
         v: &Any<'py>,
         l: &Any<'py>,
         masking: &str,
     ) -> PyResult<Any<'py>> {
         let form = words::masking(masking)?;
-        of!(&self.kind, lobe, to => {
-            let (v, l) = (Input::new("v", v)?, Input::new("l", l)?);
-            let weight = |v: [_; 3], l: [_; 3]| [lobe.reflection_weight(to(v), to(l), form)];
-            each2(&v, &l, Cost::Lookup, weight)
+        of!(&self.kind, lobes, to => {
+            let (v, l) = (Input::directions("v", v)?, Input::directions("l", l)?);
+            each(py, (lobes, &v, &l), Cost::Lookup, |(lobe, v, l): (_, [_; 3], [_; 3])| {
+                [lobe.reflection_weight(to(v), to(l), form)]
+            })
         })
     }
 
@@ -166,32 +214,36 @@ impl<'py, T: Number> View<'py, T> {
     /// Takes what the methods `albedo` are given for a view.
     pub(crate) fn new(v: Option<&Any<'py>>, cos_theta: Option<&Any<'py>>) -> PyResult<Self> {
         match (v, cos_theta) {
-            (Some(v), None) if v.extract::<f64>().is_ok() => Ok(Self::Cosines(Input::new("v", v)?)),
-            (Some(v), None) => {
-                let v = Input::<T, 3>::new("v", v)?;
-                // Three cosines look like one direction, though rarely of length 1.
-                let square = |[v]: [[T; 3]; 1]| v.map(|x| x.into().powi(2)).iter().sum::<f64>();
-                if v.batch().is_empty() && (square(v.first()) - 1.0).abs() > 1e-3 {
-                    return Err(refused(
-                        "v is no unit vector; an array of cosines goes into cos_theta",
-                    ));
-                }
-                Ok(Self::Directions(v))
+            (Some(v), None) if v.extract::<f64>().is_ok() => {
+                Ok(Self::Cosines(Input::cosines("v", v)?))
             }
-            (None, Some(cos)) => Ok(Self::Cosines(Input::new("cos_theta", cos)?)),
+            // Three cosines look like one direction, though rarely of length 1.
+            (Some(v), None) => Input::directions("v", v).map(Self::Directions).map_err(|why| {
+                refused(format!(
+                    "{}; an array of cosines goes into cos_theta",
+                    words::text(v.py(), &why)
+                ))
+            }),
+            (None, Some(cos)) => Ok(Self::Cosines(Input::cosines("cos_theta", cos)?)),
             _ => Err(refused("give either v, directions of shape (..., 3), or cos_theta")),
         }
     }
 
-    /// A function of each view; a cosine is given as (0, 0, cos θ).
-    pub(crate) fn each<const M: usize>(
+    /// A function of each view and of lobes, or what is made of them; a cosine is given as
+    /// (0, 0, cos θ).
+    pub(crate) fn each<L: Argument, const M: usize>(
         &self,
+        py: Python<'py>,
+        lobes: L,
         cost: Cost,
-        f: impl Fn([T; 3]) -> [T; M] + Sync,
+        f: impl Fn(<L::Chunks as Chunks>::Item, [T; 3]) -> [T; M] + Sync,
     ) -> PyResult<Any<'py>> {
         match self {
-            Self::Directions(v) => each(v, cost, f),
-            Self::Cosines(cos) => each(cos, cost, |[cos]| f([T::default(), T::default(), cos])),
+            Self::Directions(v) => each(py, (lobes, v), cost, |(lobe, v)| f(lobe, v)),
+            Self::Cosines(cos) => {
+                let zero = T::default();
+                each(py, (lobes, cos), cost, |(lobe, [cos])| f(lobe, [zero, zero, cos]))
+            }
         }
     }
 }

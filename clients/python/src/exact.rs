@@ -1,15 +1,19 @@
 //! The model in double precision.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
+use microfacet_core::Roughness;
 use microfacet_core::schlick::{f82_weight, schlick_weight};
 use microfacet_model::{
     Albedo, AlbedoIntegrator, Ellipsoid, ParameterError, Shape, Skew, StudentT,
 };
 use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
 
-use crate::arrays::{Any, Cost};
-use crate::distribution::{Kind, Model, PyDistribution, View, azimuth_matters};
+use crate::arrays::Any;
+use crate::broadcast::{Cost, One, each};
+use crate::distribution::{Kind, PyDistribution, View, azimuth_matters, student_t};
+use crate::surface::Surface;
 use crate::words::{self, refused};
 
 /// Tolerance of the quadrature of albedos.
@@ -25,55 +29,51 @@ const TOLERANCE_TILTED: f64 = 1e-6;
 /// inverting distributions to rounding, in some ten microseconds each.
 #[pyclass(name = "Lobe", module = "microfacet.exact", extends = PyDistribution, subclass, frozen)]
 pub(crate) struct ExactLobe {
-    model: Model,
-    integrator: OnceLock<AlbedoIntegrator>,
+    kind: Kind,
+    /// Of each shape, in rising order; made once, which takes some milliseconds.
+    integrators: Vec<(Shape, OnceLock<AlbedoIntegrator>)>,
 }
 
 impl ExactLobe {
-    fn new(model: Model, about: String) -> PyClassInitializer<Self> {
-        PyDistribution::new(Kind::Exact(model.clone()), about)
-            .add_subclass(Self { model, integrator: OnceLock::new() })
-    }
-
-    fn shape(&self) -> &Shape {
-        match &self.model {
-            Model::Family(lobe) => lobe.shape(),
-            Model::Skewed(lobe) => lobe.shape(),
-        }
-    }
-
-    /// Made once, which takes some milliseconds.
-    fn integrator(&self) -> &AlbedoIntegrator {
-        let tolerance = match self.model {
-            Model::Family(_) => TOLERANCE,
-            Model::Skewed(_) => TOLERANCE_TILTED,
+    fn new(kind: Kind, about: String) -> PyClassInitializer<Self> {
+        let mut shapes = match &kind {
+            Kind::Exact(lobe) => vec![*lobe.shape()],
+            Kind::Tilted(lobe) => vec![*lobe.shape()],
+            Kind::ExactFamily(all) => {
+                let mut gammas: Vec<f64> = all.gammas().collect();
+                gammas.sort_unstable_by(f64::total_cmp);
+                gammas.dedup();
+                gammas.into_iter().map(|gamma| *student_t([1.0; 2], gamma).shape()).collect()
+            }
+            Kind::Tables(_) | Kind::Family(_) => Vec::new(),
         };
-        self.integrator.get_or_init(|| AlbedoIntegrator::new(*self.shape(), tolerance))
+        let integrators = shapes.drain(..).map(|shape| (shape, OnceLock::new())).collect();
+        PyDistribution::new(kind.clone(), about).add_subclass(Self { kind, integrators })
     }
 
-    /// Roughness of a round lobe, for which the azimuth of a view does not matter.
-    fn round(&self) -> Option<f64> {
-        match &self.model {
-            Model::Family(lobe) if lobe.sigma_x() == lobe.sigma_y() => Some(lobe.sigma_x()),
-            _ => None,
-        }
+    fn integrator(&self, gamma: f64) -> &AlbedoIntegrator {
+        let tolerance = match self.kind {
+            Kind::Tilted(_) => TOLERANCE_TILTED,
+            _ => TOLERANCE,
+        };
+        let found = self.integrators.binary_search_by(|(of, _)| of.gamma().total_cmp(&gamma));
+        let (shape, integrator) = &self.integrators[found.expect("it is of one of the lobes")];
+        integrator.get_or_init(|| AlbedoIntegrator::new(*shape, tolerance))
     }
 
-    /// Albedos of a view from above, given by cosine and azimuth, under Fresnel weights.
+    /// Albedos of an upright lobe for a view from above, given by cosine and azimuth, under Fresnel
+    /// weights.
     fn directional<const N: usize>(
         &self,
+        lobe: &StudentT,
         cos: f64,
         phi: f64,
         weight: impl Fn(f64) -> [f64; N],
     ) -> Result<Albedo<N>, ParameterError> {
-        let integrator = self.integrator();
-        match (&self.model, self.round()) {
-            (_, Some(sigma)) => integrator.reflection(sigma, cos, weight),
-            (Model::Family(lobe), None) => {
-                let sigma = [lobe.sigma_x(), lobe.sigma_y()];
-                integrator.reflection_anisotropic(sigma, cos, phi, weight)
-            }
-            (Model::Skewed(lobe), None) => integrator.reflection_skewed(lobe, cos, phi, weight),
+        let integrator = self.integrator(lobe.shape().gamma());
+        match [lobe.sigma_x(), lobe.sigma_y()] {
+            [x, y] if x == y => integrator.reflection(x, cos, weight),
+            sigma => integrator.reflection_anisotropic(sigma, cos, phi, weight),
         }
     }
 
@@ -88,16 +88,37 @@ impl ExactLobe {
     ) -> PyResult<Any<'py>> {
         let form = words::masking(masking)?;
         let views = View::<f64>::new(v, cos_theta)?;
-        if matches!(views, View::Cosines(_)) && self.round().is_none() {
+        let is_round = match &self.kind {
+            Kind::Exact(lobe) => lobe.sigma_x() == lobe.sigma_y(),
+            Kind::ExactFamily(all) => all.is_round(),
+            _ => false,
+        };
+        if matches!(views, View::Cosines(_)) && !is_round {
             return Err(azimuth_matters());
         }
-        py.detach(|| self.integrator());
-        views.each(Cost::Quadrature, |[x, y, z]| {
+        let numbers = |[x, y, z]: [f64; 3]| {
             // Rounding may take the cosine of a unit vector beyond 1.
             let cos = if z <= 1.0 + 1e-12 { z.min(1.0) } else { z };
-            let albedo = self.directional(cos, y.atan2(x), &weight);
-            albedo.map_or([f64::NAN; N], |albedo| albedo.of(form))
-        })
+            (cos, y.atan2(x))
+        };
+        let of =
+            |albedo: Result<Albedo<N>, _>| albedo.map_or([f64::NAN; N], |albedo| albedo.of(form));
+        let upright = |lobe: &StudentT, v| {
+            let (cos, phi) = numbers(v);
+            of(self.directional(lobe, cos, phi, &weight))
+        };
+        match &self.kind {
+            Kind::Exact(lobe) => views.each(py, One(lobe), Cost::Quadrature, upright),
+            Kind::ExactFamily(all) => {
+                views.each(py, all.at(student_t), Cost::Quadrature, |lobe, v| upright(&lobe, v))
+            }
+            Kind::Tilted(lobe) => views.each(py, One(&**lobe), Cost::Quadrature, |lobe, v| {
+                let (cos, phi) = numbers(v);
+                let integrator = self.integrator(lobe.shape().gamma());
+                of(integrator.reflection_skewed(lobe, cos, phi, &weight))
+            }),
+            Kind::Tables(_) | Kind::Family(_) => unreachable!("they are of tables"),
+        }
     }
 }
 
@@ -138,50 +159,113 @@ impl ExactLobe {
     /// The average of E over the hemisphere of views, weighted by the cosine, in [0, 1]; of round
     /// lobes alone.
     #[pyo3(signature = (masking="height-correlated"))]
-    fn albedo_average(&self, py: Python<'_>, masking: &str) -> PyResult<f64> {
+    fn albedo_average<'py>(&self, py: Python<'py>, masking: &str) -> PyResult<Any<'py>> {
         let form = words::masking(masking)?;
-        let sigma = self.round().ok_or_else(|| {
-            refused("averages are integrated for round lobes alone; average albedo(v) over views")
-        })?;
-        let average = py.detach(|| self.integrator().average(sigma, |_| [1.0]));
-        Ok(average.map_err(refused)?.of(form)[0])
-    }
-
-    /// Shape.
-    #[getter]
-    fn gamma(&self) -> f64 {
-        self.shape().gamma()
+        let average = |sigma, gamma| {
+            let average = self.integrator(gamma).average(sigma, |_| [1.0]);
+            average.map_or([f64::NAN], |average| average.of(form))
+        };
+        match &self.kind {
+            Kind::Exact(lobe) if lobe.sigma_x() == lobe.sigma_y() => {
+                each(py, One(lobe), Cost::Quadrature, |lobe| {
+                    average(lobe.sigma_x(), lobe.shape().gamma())
+                })
+            }
+            Kind::ExactFamily(all) if all.is_round() => {
+                let lobes = all.at(|[sigma, _], gamma| average(sigma, gamma));
+                each(py, lobes, Cost::Quadrature, |average| average)
+            }
+            _ => Err(refused(
+                "averages are integrated for round lobes alone; average albedo(v) over views",
+            )),
+        }
     }
 }
 
-/// A member of the Student-t family in double precision: roughness sigma > 0, a number or (sigma_x,
-/// sigma_y), and shape gamma in (1.5, inf].
+/// A member of the Student-t family in double precision: roughness sigma > 0 and shape gamma in
+/// (1.5, inf]; arguments are those of microfacet.StudentT, arrays among them.
 #[pyclass(name = "StudentT", module = "microfacet.exact", extends = ExactLobe, frozen)]
-pub(crate) struct ExactStudentT {}
+pub(crate) struct ExactStudentT {
+    surface: Arc<Surface>,
+}
 
 #[pymethods]
 impl ExactStudentT {
     #[new]
-    fn new(sigma: &Any, gamma: f64) -> PyResult<PyClassInitializer<Self>> {
-        let lobe = StudentT::new(words::sigma(sigma)?, gamma).map_err(refused)?;
-        let about =
-            format!("StudentT(sigma=({}, {}), gamma={gamma})", lobe.sigma_x(), lobe.sigma_y());
-        Ok(ExactLobe::new(Model::Family(lobe), about).add_subclass(Self {}))
+    #[pyo3(signature = (sigma=None, gamma=None, *, sigma_x=None, sigma_y=None, **others),
+           text_signature = "(sigma=None, gamma=None, *, sigma_x=None, sigma_y=None)")]
+    fn new(
+        sigma: Option<&Any>,
+        gamma: Option<&Any>,
+        sigma_x: Option<&Any>,
+        sigma_y: Option<&Any>,
+        others: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let surface = Arc::new(Surface::new(sigma, gamma, sigma_x, sigma_y, others)?);
+        let kind = match surface.one() {
+            Some((sigma, gamma)) => {
+                Kind::Exact(StudentT::new(Roughness(sigma), gamma).map_err(refused)?)
+            }
+            None => {
+                surface.check_all(|sigma, gamma| StudentT::new(Roughness([sigma; 2]), gamma))?;
+                Kind::ExactFamily(Arc::clone(&surface))
+            }
+        };
+        Ok(ExactLobe::new(kind, surface.about()).add_subclass(Self { surface }))
+    }
+
+    /// Roughness along x and y: numbers, or arrays.
+    #[getter]
+    fn sigma<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.surface.sigma(py)?)
+    }
+
+    /// Shape: a number, or an array.
+    #[getter]
+    fn gamma<'py>(&self, py: Python<'py>) -> PyResult<Any<'py>> {
+        self.surface.gamma(py)
+    }
+
+    /// The shape to which arrays of sigma and gamma broadcast; () for one lobe.
+    #[getter]
+    fn batch_shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.surface.batch())
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Any<'py>, Bound<'py, PyTuple>)> {
+        let again = py.import("functools")?.getattr("partial")?;
+        let arguments = self.surface.arguments(py)?;
+        let again = again.call((py.get_type::<Self>(),), Some(&arguments))?;
+        Ok((again, PyTuple::empty(py)))
     }
 }
 
 /// A Student-t lobe tilted and turned, in double precision; arguments are those of
 /// microfacet.Ellipsoid.
 #[pyclass(name = "Ellipsoid", module = "microfacet.exact", extends = ExactLobe, frozen)]
-pub(crate) struct ExactEllipsoid {}
+pub(crate) struct ExactEllipsoid {
+    made: ([f64; 2], [f64; 3], f64),
+}
 
 #[pymethods]
 impl ExactEllipsoid {
     #[new]
     fn new(sigma: &Any, theta: &Any, gamma: f64) -> PyResult<PyClassInitializer<Self>> {
-        let skew = Skew::new(words::sigma(sigma)?, words::angles(theta)?).map_err(refused)?;
+        let (sigma, theta) = (words::sigma(sigma)?, words::angles(theta)?);
+        let skew = Skew::new(sigma, theta).map_err(refused)?;
         let lobe = Ellipsoid::new(skew, gamma).map_err(refused)?;
         let about = format!("Ellipsoid(gamma={gamma})");
-        Ok(ExactLobe::new(Model::Skewed(Box::new(lobe)), about).add_subclass(Self {}))
+        let made = (sigma.0, theta, gamma);
+        Ok(ExactLobe::new(Kind::Tilted(Box::new(lobe)), about).add_subclass(Self { made }))
+    }
+
+    /// Shape.
+    #[getter]
+    fn gamma(&self) -> f64 {
+        self.made.2
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Any<'py>, Bound<'py, PyTuple>)> {
+        Ok((py.get_type::<Self>().into_any(), self.made.into_pyobject(py)?))
     }
 }

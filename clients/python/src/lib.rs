@@ -1,20 +1,25 @@
 //! The extension module of the Python package `microfacet`.
 //!
-//! [`arrays`] broadcasts arguments and runs functions of them on all cores; [`words`] turns words
-//! and errors into those of Python. [`tables`] loads and bakes sets, [`lobe`] and [`bsdf`] are the
-//! run-time crate, [`exact`] the model, [`distribution`] what lobes of both have in common.
+//! [`arrays`] takes arguments, which [`broadcast`] runs functions of on all cores; [`words`] turns
+//! words and errors into those of Python. [`tables`] loads and bakes sets, [`lobe`] and [`bsdf`] are
+//! the run-time crate, [`exact`] the model, [`distribution`] what lobes of both have in common.
+//! [`surface`] is roughness and shape of one lobe or many, [`set`] what a set's lobes share.
 //! [`shape`] has the tables of a shape for lookups elsewhere, and [`farm`] what processes bake
 //! together.
 
 use pyo3::prelude::*;
 
 mod arrays;
+mod broadcast;
 mod bsdf;
 mod distribution;
 mod exact;
 mod farm;
 mod lobe;
+mod material;
+mod set;
 mod shape;
+mod surface;
 mod tables;
 mod words;
 
@@ -39,7 +44,7 @@ mod _microfacet {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        crate::arrays::has_threads();
+        crate::broadcast::has_threads();
         // Under other names here; `microfacet.exact` gives them theirs.
         module.add("ExactLobe", module.py().get_type::<ExactLobe>())?;
         module.add("ExactStudentT", module.py().get_type::<ExactStudentT>())?;

@@ -7,7 +7,8 @@ use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{Any, Cost, Input, each};
+use crate::arrays::{Any, Input};
+use crate::broadcast::{Cost, One, each};
 use crate::words::{one_of, refused};
 
 /// The tables of one shape gamma for any roughness, as exports for C and shaders have them
@@ -54,10 +55,10 @@ pub(crate) struct PyDielectricAlbedo(pub(crate) DielectricAlbedo);
 impl PyDielectricAlbedo {
     /// The shares of light that are reflected and transmitted, shape (..., 2), each in [0, 1], for
     /// a view of this cosine on its side of the surface, "outside" or "inside".
-    fn shares<'py>(&self, cos_theta: &Any<'py>, side: &str) -> PyResult<Any<'py>> {
+    fn shares<'py>(&self, py: Python<'py>, cos_theta: &Any<'py>, side: &str) -> PyResult<Any<'py>> {
         let sides = [("outside", &self.0.outside), ("inside", &self.0.inside)];
         let curve = one_of("side", side, &sides)?;
-        let cos = Input::new("cos_theta", cos_theta)?;
-        each(&cos, Cost::Lookup, |[cos]| curve.eval([0.0, 0.0, cos]))
+        let cos = Input::cosines("cos_theta", cos_theta)?;
+        each(py, (One(curve), &cos), Cost::Lookup, |(curve, [cos])| curve.eval([0.0, 0.0, cos]))
     }
 }

@@ -12,14 +12,18 @@ use microfacet_baker::store::{self, Format};
 use microfacet_baker::table_set::{Settings, Target, bake_with};
 use microfacet_baker::table_spec::Quality;
 use microfacet_sampler::Tables;
-use microfacet_tables::{Precision, describe};
+use microfacet_tables::{Precision, describe, encode};
 use pyo3::exceptions::{PyFileNotFoundError, PyRuntimeError, PyTypeError, PyUserWarning};
 use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PyTuple};
 
-use crate::arrays::{Any, has_threads};
+use crate::arrays::Any;
+use crate::broadcast::has_threads;
 use crate::bsdf::PyBsdf;
-use crate::lobe::{PyEllipsoid, PyLobe, PyStudentT, embedded};
+use crate::lobe::{Made, PyEllipsoid, PyLobe, PyStudentT};
+use crate::set::Set;
 use crate::shape::{PyDielectricAlbedo, PyShape};
+use crate::surface::Surface;
 use crate::words::{self, one_of, refused, unbound, unread, unscened};
 
 /// Time between two checks for an interrupt while a bake runs.
@@ -31,8 +35,15 @@ const PATIENCE: Duration = Duration::from_millis(20);
 /// out, with the tables of lobes that they alone have.
 #[pyclass(name = "Tables", module = "microfacet", frozen)]
 pub(crate) struct PyTables {
-    pub(crate) set: Arc<Tables>,
+    pub(crate) set: Arc<Set>,
     origin: String,
+}
+
+impl PyTables {
+    /// The set that a lobe is from.
+    pub(crate) fn of(set: &Arc<Set>) -> Self {
+        Self { set: Arc::clone(set), origin: "of a lobe".into() }
+    }
 }
 
 #[pymethods]
@@ -42,7 +53,7 @@ impl PyTables {
     fn new(path: Option<PathBuf>, materials: Option<Vec<String>>) -> PyResult<Self> {
         let Some(path) = path else {
             return match materials {
-                None => Ok(Self { set: embedded(), origin: "built in".into() }),
+                None => Ok(Self { set: Set::embedded(), origin: "built in".into() }),
                 Some(_) => Err(refused("materials are those of a path; the set built in has none")),
             };
         };
@@ -59,13 +70,24 @@ impl PyTables {
                 store::read_materials(&path, &names)
             }
         };
-        Ok(Self { set: Arc::new(set.map_err(unread)?), origin })
+        Ok(Self { set: Set::new(set.map_err(unread)?), origin })
     }
 
-    /// The Student-t lobe of roughness sigma, a number or (sigma_x, sigma_y), each in [1e-8, 1e6],
-    /// and shape gamma, which the tables must cover: 2 is GGX, inf is Beckmann.
-    fn student_t(&self, py: Python<'_>, sigma: &Any, gamma: f64) -> PyResult<Py<PyStudentT>> {
-        Py::new(py, PyStudentT::of(&self.set, sigma, gamma)?)
+    /// Student-t lobes of these tables, which must cover their shapes; arguments are those of
+    /// microfacet.StudentT. For arrays the tables must be over a range of shapes, as those built in.
+    #[pyo3(signature = (sigma=None, gamma=None, *, sigma_x=None, sigma_y=None, **others),
+           text_signature = "($self, sigma=None, gamma=None, *, sigma_x=None, sigma_y=None)")]
+    fn student_t(
+        &self,
+        py: Python<'_>,
+        sigma: Option<&Any>,
+        gamma: Option<&Any>,
+        sigma_x: Option<&Any>,
+        sigma_y: Option<&Any>,
+        others: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Py<PyStudentT>> {
+        let surface = Surface::new(sigma, gamma, sigma_x, sigma_y, others)?;
+        Py::new(py, PyStudentT::of(py, &self.set, surface)?)
     }
 
     /// A Student-t lobe tilted and turned by the angles theta = (x, y, z) in radians.
@@ -82,7 +104,8 @@ impl PyTables {
     /// The lobe of a material by its name in the recipe that the set was baked from.
     fn material(&self, py: Python<'_>, name: &str) -> PyResult<Py<PyLobe>> {
         let lobe = self.set.material(name).map_err(refused)?;
-        Py::new(py, PyLobe::new(lobe, &self.set, format!("Lobe({name:?})")))
+        let made = Made::Material(name.into());
+        Py::new(py, PyLobe::new(lobe, &self.set, made, format!("Lobe({name:?})")))
     }
 
     /// The BSDF of a material by name: its lobe, reflectance and form of masking.
@@ -139,6 +162,23 @@ impl PyTables {
     fn write(&self, folder: PathBuf) -> PyResult<()> {
         store::write(&folder, &self.set, Format::Safetensors).map_err(unread)?;
         Ok(())
+    }
+
+    /// Those built in are found again, others go along.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Any<'py>, Bound<'py, PyTuple>)> {
+        let class = py.get_type::<Self>();
+        if Arc::ptr_eq(&self.set, &Set::embedded()) {
+            return Ok((class.into_any(), PyTuple::empty(py)));
+        }
+        let bytes = encode(self.set.provenance(), self.set.tables()).map_err(refused)?;
+        let all = (PyBytes::new(py, &bytes), &self.origin).into_pyobject(py)?;
+        Ok((class.getattr("_of_bytes")?, all))
+    }
+
+    /// A set from the bytes of its file.
+    #[staticmethod]
+    fn _of_bytes(bytes: &[u8], origin: String) -> PyResult<Self> {
+        Ok(Self { set: Set::new(Tables::from_bytes(bytes).map_err(refused)?), origin })
     }
 
     fn __repr__(&self) -> String {
@@ -203,7 +243,7 @@ pub(crate) fn bake(
     let settings = Settings { cache, max_memory, ..Settings::default() };
     let work = move || bake_with(&plan, target, settings).map(|baked| baked.set);
     let set = interruptible(py, work)?.map_err(refused)?;
-    let tables = PyTables { set: Arc::new(set), origin: "baked".into() };
+    let tables = PyTables { set: Set::new(set), origin: "baked".into() };
     if let Some(out) = out {
         tables.write(out)?;
     }

@@ -6,12 +6,14 @@ use microfacet_baker::scene::{SceneError, SceneErrorKind};
 use microfacet_baker::store::StoreError;
 use microfacet_sampler::lobe::Roughness;
 use microfacet_sampler::{
-    BindError, BsdfSettings, Compensation, Masking, StandIn, Tables, Transport,
+    BindError, BsdfSettings, Compensation, Masking, Metal, StandIn, Tables, Transport,
 };
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
-use crate::arrays::{Any, Input, shown};
+use crate::arrays::{Any, Input};
+use crate::broadcast::shown;
 
 /// An error with the text that the command prints.
 pub(crate) fn refused(why: impl ToString) -> PyErr {
@@ -27,6 +29,63 @@ pub(crate) fn unbound(why: BindError) -> PyErr {
         ("bake a set from these lines", "give microfacet.bake a recipe with these lines"),
     ];
     refused(words.iter().fold(why.to_string(), |why, (rust, python)| why.replace(rust, python)))
+}
+
+/// The text of an exception.
+pub(crate) fn text(py: Python<'_>, why: &PyErr) -> String {
+    why.value(py).to_string()
+}
+
+/// Names that other renderers have for arguments of ours, with what to write.
+const ELSEWHERE: [(&str, &str); 15] = [
+    ("alpha", "sigma is what others call alpha: sigma = alpha"),
+    ("alpha_x", "sigma_x is what others call alpha_x: sigma_x = alpha_x"),
+    ("alpha_y", "sigma_y is what others call alpha_y: sigma_y = alpha_y"),
+    ("roughness", "sigma is alpha, which renderers square roughness for: sigma = roughness**2"),
+    ("anisotropy", "give sigma_x and sigma_y"),
+    ("distribution", "gamma = 2 is GGX, and gamma = math.inf Beckmann"),
+    ("nu", "gamma is the shape, half of Student's degrees of freedom plus 1: gamma = nu/2 + 1"),
+    ("shape", "the shape is gamma"),
+    ("tail", "the shape is gamma: 2 is GGX, below are heavier tails"),
+    ("color", "the reflectance at normal incidence is f0; the base of a Plastic is base"),
+    ("base_color", "the reflectance at normal incidence is f0; the base of a Plastic is base"),
+    ("specular", "the reflectance at normal incidence is f0"),
+    ("ior", "the index of refraction is eta; of a metal eta with k"),
+    ("material", "give metal, a name such as \"gold\" or \"Au\""),
+    ("edge_tint", "the tint at 82 degrees is f82"),
+];
+
+/// Raises TypeError for arguments that a class does not have, and says what to write instead.
+pub(crate) fn lead_on(class: &str, others: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
+    let Some(name) = others.and_then(|others| others.keys().get_item(0).ok()) else {
+        return Ok(());
+    };
+    let name = name.to_string();
+    let hint = ELSEWHERE.iter().find(|(known, _)| *known == name);
+    let hint = hint.map_or(String::new(), |(_, hint)| format!(": {hint}"));
+    Err(PyTypeError::new_err(format!("{class} has no argument {name}{hint}")))
+}
+
+/// An index of refraction, which must be given.
+pub(crate) fn index(eta: Option<f64>) -> PyResult<f64> {
+    eta.ok_or_else(|| {
+        PyTypeError::new_err("eta is missing: the index of refraction inside over that outside")
+    })
+}
+
+/// A metal by name or symbol.
+pub(crate) fn metal(py: Python<'_>, name: &str) -> PyResult<Metal> {
+    name.parse::<Metal>().or_else(|why| {
+        // As people write it: Gold, AU.
+        let lower = name.trim().to_lowercase();
+        let names = Metal::ALL.map(Metal::name);
+        let close = py.import("difflib")?.call_method1("get_close_matches", (lower, names, 1))?;
+        let hint = match close.get_item(0) {
+            Ok(close) => format!("; did you mean \"{close}\"?"),
+            Err(_) => String::new(),
+        };
+        Err(refused(format!("metal \"{name}\": {why}{hint}")))
+    })
 }
 
 /// Why a scene cannot be read: errors of the operating system are OSError.

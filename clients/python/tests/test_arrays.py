@@ -71,11 +71,16 @@ def test_chunks_join_without_seams():
         (lambda: LOBE.g1([1.0, 2.0]), ["v has the shape (2,)", "3 numbers"]),
         (lambda: LOBE.g1(1.0), ["v has the shape ()"]),
         (lambda: LOBE.sample_visible_normal(V, [0.1]), ["u has the shape (1,)", "2 numbers"]),
-        (lambda: LOBE.g2(np.ones((2, 3)), np.ones((3, 3))), ["broadcast", "v (2,)", "l (3,)"]),
+        (lambda: LOBE.g2([V] * 2, [V] * 3), ["broadcast", "v (2,)", "l (3,)"]),
         (lambda: LOBE.g2(V, V, "smith"), ['"smith"', '"uncorrelated" or "height-correlated"']),
         (lambda: LOBE.g1("abc"), ["could not convert"]),
         (lambda: LOBE.g1([0, 0, 1j]), ["v must be real"]),
         (lambda: LOBE.albedo([0.8, 0.2, 0.1]), ["no unit vector", "cos_theta"]),
+        (lambda: LOBE.g1([V, 2 * V]), ["v[1] is no unit vector", "length is 2.0000", "norm(v"]),
+        (lambda: exact.StudentT(0.4, 2.5).g2(V, [[V], [0.9 * V]]), ["l[1, 0] is no unit vector"]),
+        (lambda: LOBE.g1(np.float16([0.6, 0.0, 0.81])), ["v is no unit vector"]),
+        (lambda: LOBE.albedo(1.1), ["v = 1.1", "[-1, 1]"]),
+        (lambda: LOBE.albedo(cos_theta=[0.5, -2]), ["cos_theta[1] = -2", "[-1, 1]"]),
         (lambda: LOBE.albedo(), ["either v", "cos_theta"]),
         (lambda: LOBE.albedo(V, cos_theta=0.5), ["either v", "cos_theta"]),
     ],
@@ -85,6 +90,16 @@ def test_errors_name_what_is_wrong(call, words):
         call()
     for word in words:
         assert word in str(why.value)
+
+
+def test_lengths_may_be_rounded_and_null_vectors_are_no_errors():
+    rng = np.random.default_rng(6)
+    v = rng.normal(size=(2000, 3))
+    v /= np.linalg.norm(v, axis=1, keepdims=True)
+    assert np.isfinite(LOBE.g1(v.astype(np.float16))).all()
+    # What a path that ends has for its light.
+    assert microfacet.Conductor(LOBE).eval(V, [[0, 0, 0], [0, 0, 1]])[0].tolist() == [0, 0, 0]
+    assert LOBE.albedo(cos_theta=np.float32(1.0000001)) == LOBE.albedo(1.0)
 
 
 def test_corners_give_numbers():
@@ -102,12 +117,17 @@ def any_layout(rng: np.random.Generator, shape: "tuple[int, ...]") -> np.ndarray
     """Numbers of a shape, in one of the ways in which memory may hold them."""
     order = rng.permutation(len(shape))
     dtype = rng.choice(["<f4", ">f4", "<f8"])
-    x = rng.random([shape[i] for i in order]).astype(dtype).transpose(np.argsort(order))
+    x = rng.random([shape[i] for i in order])
+    if shape[-1:] == (3,):
+        x /= np.linalg.norm(x, axis=order.tolist().index(len(shape) - 1), keepdims=True)
+    x = x.astype(dtype).transpose(np.argsort(order))
     way = rng.choice(["as it is", "reversed", "repeated", "not aligned"])
     if way == "reversed":
         return np.flip(x)
-    if way == "repeated" and shape and x.size:
-        return np.broadcast_to(x.take([0], rng.integers(len(shape))), shape)
+    # Components of directions are not repeated, which would change their length.
+    axes = len(shape) - (shape[-1:] == (3,))
+    if way == "repeated" and axes and x.size:
+        return np.broadcast_to(x.take([0], rng.integers(axes)), shape)
     if way == "not aligned":
         odd = np.zeros(x.nbytes + 1, np.uint8)[1:].view(dtype).reshape(shape)
         odd[...] = x
@@ -136,8 +156,9 @@ def test_arguments_of_every_shape_and_layout_broadcast():
 
 
 def test_one_number_that_is_repeated_stands_for_all():
-    pair = microfacet.StudentT(np.broadcast_to(0.3, 2), 2.5)
-    assert pair.sigma == (0.3, 0.3)
+    two = microfacet.StudentT(np.broadcast_to(0.3, 2), 2.5)
+    assert two.batch_shape == (2,) and (two.sigma[0] == [0.3, 0.3]).all()
+    assert two.g1(V).tolist() == [microfacet.StudentT(np.array([0.3]), 2.5).g1(V)[0]] * 2
     tilted = exact.Ellipsoid(0.3, np.broadcast_to(0.1, 3), 2.5)
     assert tilted.d(V) == exact.Ellipsoid(0.3, [0.1, 0.1, 0.1], 2.5).d(V)
 
@@ -176,8 +197,7 @@ def test_more_axes_than_numpys_are_refused():
     ]:
         with pytest.raises(ValueError, match="dimension"):
             call()
-    with pytest.raises(ValueError, match="sigma has the shape"):
-        microfacet.StudentT(cos, 2.5)
+    assert microfacet.StudentT(cos, 2.5).d(V).shape == cos.shape
     with pytest.raises(ValueError, match="f0 has the shape"):
         microfacet.Conductor(LOBE, f0=cos)
     with pytest.raises(ValueError, match="theta must be"):
@@ -195,14 +215,19 @@ from microfacet import exact
 resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))
 lobe, model = microfacet.StudentT(0.4, 2.5), exact.StudentT(0.4, 2.5)
 gold = microfacet.Conductor(lobe, metal="gold")
+sigma, gamma = np.linspace(0.1, 0.5, 50_000), np.linspace(1.6, 4, 50_000)
+many = microfacet.StudentT(sigma[:, None], gamma)
+golds = microfacet.Conductor(many, metal="gold", compensation="turquin")
 v = np.broadcast_to(np.float32([0.6, 0.0, 0.8]), (50_000, 1, 3)).copy()
 w, u = np.swapaxes(v, 0, 1), np.full((1, 50_000, 2), 0.3, np.float32)
 choice, all = np.full((50_000, 1, 1), 0.5), np.broadcast_to(v, (50_000, 50_000, 3))
 calls = [
     lambda: gold.eval(v, w), lambda: gold.pdf(v, w), lambda: gold.sample(v, 0.5, u),
-    lambda: gold.sample(v[0, 0], choice, u),
+    lambda: gold.sample(v[0, 0], choice, u), lambda: golds.sample(v[0, 0], 0.5, [0.3, 0.7]),
+    lambda: golds.eval(v[0, 0], v[0, 0]), lambda: many.albedo(0.5), lambda: many.albedo_average(),
+    lambda: exact.StudentT(sigma[:, None], gamma).g1(v[0, 0]),
 ]
-for one in [lobe, model]:
+for one in [lobe, model, many]:
     for name in ["g2", "reflection_weight", "visible_normal_pdf", "sample_visible_normal"]:
         calls.append(lambda f=getattr(one, name), x=u if name[0] == "s" else w: f(v, x))
     for name in ["d", "g1", "lambda_", "albedo", "albedo_parts"]:
@@ -219,7 +244,11 @@ def peak():
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 
-for call in [lambda: lobe.g2(v[:2000], w[:, :2000]), lambda: lobe.g2(all[:2000, :2000], v[0, 0])]:
+few = microfacet.StudentT(sigma[:2000, None], gamma[:2000])
+for call in [
+    lambda: lobe.g2(v[:2000], w[:, :2000]), lambda: lobe.g2(all[:2000, :2000], v[0, 0]),
+    lambda: few.g2(v[:2000], w[:, :2000]),
+]:
     before = peak()
     assert call().nbytes == 16_000_000
     assert peak() - before < 24_000, f"{peak() - before} kB"

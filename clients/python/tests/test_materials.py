@@ -29,6 +29,35 @@ def tables():
     return microfacet.bake(RECIPE, cache=False, quality="draft")
 
 
+def test_metals_are_known_by_name_and_symbol():
+    lobe, v = microfacet.StudentT(0.3, 2.5), [0.6, 0.0, 0.8]
+    for symbol, name in [("Au", "gold"), ("Ag", "silver"), ("W", "tungsten"), ("CuZn", "brass")]:
+        values = [microfacet.Conductor(lobe, metal=word).eval(v, v) for word in (symbol, name)]
+        assert np.array_equal(*values)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: microfacet.StudentT(roughness=0.5, gamma=2), ["roughness", "sigma = roughness**2"]),
+        (lambda: microfacet.StudentT(alpha=0.5, gamma=2), ["sigma = alpha"]),
+        (lambda: exact.StudentT(0.5, nu=3), ["gamma = nu/2 + 1"]),
+        (lambda: microfacet.Tables().student_t(alpha_x=0.5), ["sigma_x = alpha_x"]),
+        (lambda: microfacet.StudentT(0.5, 2, tint=3), ["StudentT has no argument tint"]),
+        (lambda: microfacet.StudentT(0.5), ["gamma is missing", "2 is GGX"]),
+        (lambda: microfacet.StudentT(gamma=2), ["sigma is missing"]),
+        (lambda: microfacet.Conductor(microfacet.StudentT(1, 2), material="Au"), ["give metal"]),
+        (lambda: microfacet.Dielectric(microfacet.StudentT(1, 2), ior=1.5), ["eta"]),
+        (lambda: microfacet.Plastic(microfacet.StudentT(1, 2), 1.5), ["base is missing"]),
+    ],
+)
+def test_words_of_other_renderers_lead_on(call, words):
+    with pytest.raises(TypeError) as why:
+        call()
+    for word in words:
+        assert word in str(why.value), why.value
+
+
 def directions(n, seed, below=False):
     rng = np.random.default_rng(seed)
     w = rng.normal(size=(n, 3))
@@ -55,7 +84,7 @@ def test_lobes_say_what_they_are():
     [
         (lambda: microfacet.StudentT(-1, 2), ["sigma = -1", "[1e-8, 1e6]"]),
         (lambda: microfacet.StudentT(0.3, 1.2), ["gamma = 1.2", "(1.5, inf]"]),
-        (lambda: microfacet.StudentT([1, 2, 3], 2), ["sigma", "(3,)", "(sigma_x, sigma_y)"]),
+        (lambda: microfacet.StudentT([1, 2, 3], 2), ["sigma is a list of 3", "(sigma_x, sigma_y)"]),
         (lambda: microfacet.Ellipsoid(0.3, 0.1, 2), ["theta", "3 numbers"]),
         (lambda: exact.StudentT(0, 2), ["sigma = 0", "positive"]),
         (
@@ -68,6 +97,10 @@ def test_lobes_say_what_they_are():
         ),
         (lambda: microfacet.StudentT((0.1, 0.3), 2).albedo(0.5), ["[[material]]", "stand_in=True"]),
         (lambda: microfacet.Conductor(microfacet.StudentT(0.1, 2), metal="wood"), ["wood", "gold"]),
+        (
+            lambda: microfacet.Conductor(microfacet.StudentT(0.1, 2), metal="Aluminum foil"),
+            ['did you mean "aluminium"?'],
+        ),
         (lambda: microfacet.Conductor(microfacet.StudentT(0.1, 2), f0=1.5), ["f0 = 1.5", "[0, 1]"]),
         (lambda: microfacet.Conductor(microfacet.StudentT(0.1, 2), eta=1.5), ["eta with k"]),
         (lambda: microfacet.Dielectric(microfacet.StudentT(0.1, 2), -1), ["eta = -1", "[0.001, 1000]"]),

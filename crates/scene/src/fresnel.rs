@@ -30,15 +30,5 @@ pub(super) fn conductor(eta: [f64; 3], k: [f64; 3], place: &Place) -> Result<Ref
 ///
 /// The indices of [`Metal`] and of the renderer's own spectrum are different measurements.
 pub(super) fn metal(symbol: &str) -> Option<Metal> {
-    Some(match symbol {
-        "Ag" => Metal::Silver,
-        "Al" => Metal::Aluminium,
-        "Au" => Metal::Gold,
-        "Cr" => Metal::Chromium,
-        "Cu" => Metal::Copper,
-        "CuZn" => Metal::Brass,
-        "Ni" => Metal::Nickel,
-        "W" => Metal::Tungsten,
-        _ => return None,
-    })
+    Metal::ALL.into_iter().find(|metal| metal.symbol() == symbol)
 }

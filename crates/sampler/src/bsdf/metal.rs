@@ -120,6 +120,25 @@ impl Metal {
         self.row().0
     }
 
+    /// The chemical symbol, of brass CuZn, as renderers name their spectra.
+    #[must_use]
+    pub const fn symbol(self) -> &'static str {
+        match self {
+            Self::Gold => "Au",
+            Self::Silver => "Ag",
+            Self::Copper => "Cu",
+            Self::Aluminium => "Al",
+            Self::Iron => "Fe",
+            Self::Chromium => "Cr",
+            Self::Titanium => "Ti",
+            Self::Nickel => "Ni",
+            Self::Platinum => "Pt",
+            Self::Brass => "CuZn",
+            Self::Cobalt => "Co",
+            Self::Tungsten => "W",
+        }
+    }
+
     /// Index of refraction at 650, 550 and 450 nm: for red, green and blue.
     #[must_use]
     pub const fn eta(self) -> [f64; 3] {
@@ -173,12 +192,13 @@ impl core::error::Error for UnknownMetal {}
 impl FromStr for Metal {
     type Err = UnknownMetal;
 
-    /// The metal of that [`name`](Self::name); "aluminum" is aluminium.
+    /// The metal of that [`name`](Self::name) or [`symbol`](Self::symbol); "aluminum" is aluminium.
     fn from_str(name: &str) -> Result<Self, UnknownMetal> {
         if name == "aluminum" {
             return Ok(Self::Aluminium);
         }
-        Self::ALL.into_iter().find(|metal| metal.name() == name).ok_or(UnknownMetal)
+        let of = |metal: &Self| metal.name() == name || metal.symbol() == name;
+        Self::ALL.into_iter().find(of).ok_or(UnknownMetal)
     }
 }
 
@@ -281,10 +301,11 @@ mod tests {
     fn names_are_read_back() {
         for metal in Metal::ALL {
             assert_eq!(metal.name().parse(), Ok(metal));
+            assert_eq!(metal.symbol().parse(), Ok(metal));
             assert_eq!(metal.to_string(), metal.name());
         }
         assert_eq!("aluminum".parse(), Ok(Aluminium));
-        for unknown in ["", "Gold", "steel", "gold "] {
+        for unknown in ["", "Gold", "AU", "steel", "gold "] {
             assert_eq!(unknown.parse::<Metal>(), Err(UnknownMetal), "{unknown:?}");
         }
         assert_eq!(
