@@ -22,6 +22,14 @@ use crate::words::{self, refused, unbound};
 /// away from the surface; z < 0 is inside. f excludes the cosine, densities are per steradian of l.
 /// Where all events are deltas (a smooth surface) f and density are 0. transport is "radiance", for
 /// paths from the camera, which refraction scales by (n_v/n_l)^2, or "importance".
+///
+/// >>> import microfacet
+/// >>> gold = microfacet.Conductor(microfacet.StudentT(0.3, 2.5), metal="gold")
+/// >>> v, l = [0.6, 0.0, 0.8], [[0.0, 0.0, 1.0], [-0.6, 0.0, 0.8]]
+/// >>> gold.eval(v, l).shape, gold.pdf(v, l).shape
+/// ((2, 3), (2,))
+/// >>> gold.sample(v, 0.5, [0.3, 0.7]).l.shape
+/// (3,)
 #[pyclass(name = "Bsdf", module = "microfacet", subclass, frozen)]
 pub(crate) struct PyBsdf {
     bsdf: Material,
@@ -35,6 +43,14 @@ impl PyBsdf {
 }
 
 /// Lights drawn for views, arrays of one shape: a path that ends has l, weight and pdf of 0.
+///
+/// >>> import microfacet
+/// >>> glass = microfacet.Dielectric(microfacet.StudentT(0.3, 2.5), eta=1.5)
+/// >>> sample = glass.sample([0.6, 0.0, 0.8], [0.01, 0.9], [0.3, 0.7])
+/// >>> sample.l.shape, sample.weight.shape, sample.pdf.shape
+/// ((2, 3), (2, 3), (2,))
+/// >>> sample.transmitted.tolist()
+/// [False, True]
 #[pyclass(name = "BsdfSample", module = "microfacet", frozen, get_all)]
 pub(crate) struct PySample {
     /// Directions of light, shape (..., 3).
@@ -146,6 +162,13 @@ impl PyBsdf {
 /// 82 degrees; none of them, F = 1. Colours are a number or three. compensation, "none", "turquin"
 /// or "kulla-conty", gives back the light of further bounces; ValueError where the tables of the
 /// lobe have no albedo for it.
+///
+/// >>> import microfacet
+/// >>> lobe = microfacet.StudentT(0.3, 2.5)
+/// >>> gold = microfacet.Conductor(lobe, metal="gold", compensation="kulla-conty")
+/// >>> r, g, b = gold.eval([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8])
+/// >>> bool(r > g > b)
+/// True
 #[pyclass(name = "Conductor", module = "microfacet", extends = PyBsdf, frozen)]
 pub(crate) struct PyConductor {}
 
@@ -215,6 +238,12 @@ impl PyConductor {
 /// reflects and refracts.
 ///
 /// A compensation needs a set of tables that was baked for the material; see Conductor.
+///
+/// >>> import microfacet
+/// >>> glass = microfacet.Dielectric(microfacet.StudentT(0.3, 2.5), eta=1.5)
+/// >>> v, above, below = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8], [-0.4, 0.0, -0.9165151]
+/// >>> bool((glass.eval(v, [above, below]) > 0.0).all())
+/// True
 #[pyclass(name = "Dielectric", module = "microfacet", extends = PyBsdf, frozen)]
 pub(crate) struct PyDielectric {}
 
@@ -256,6 +285,12 @@ impl PyDielectric {
 /// A rough dielectric coat of a lobe, of index eta, over a diffuse base, a colour in [0, 1].
 ///
 /// A compensation needs a set of tables that was baked for the coat; see Conductor.
+///
+/// >>> import microfacet
+/// >>> red = microfacet.Plastic(microfacet.StudentT(0.1, 2.5), eta=1.5, base=(0.8, 0.1, 0.1))
+/// >>> r, g, b = red.eval([0.6, 0.0, 0.8], [0.0, 0.0, 1.0])
+/// >>> bool(r > g == b)
+/// True
 #[pyclass(name = "Plastic", module = "microfacet", extends = PyBsdf, frozen)]
 pub(crate) struct PyPlastic {}
 

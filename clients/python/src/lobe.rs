@@ -38,6 +38,12 @@ enum Albedos<'a> {
 /// Arrays of directions have the shape (..., 3): unit vectors in the tangent frame, n = +z, away
 /// from the surface. Arguments broadcast; results are float32. GGX is drawn from tables, too, where
 /// the set has them for gamma = 2.
+///
+/// >>> import microfacet
+/// >>> lobe = microfacet.StudentT(0.3, 2.5)  # or Ellipsoid, or Tables.material
+/// >>> m = lobe.sample_visible_normal([0.6, 0.0, 0.8], [[0.3, 0.7], [0.5, 0.5]])
+/// >>> m.shape, lobe.visible_normal_pdf([0.6, 0.0, 0.8], m).shape
+/// ((2, 3), (2,))
 #[pyclass(name = "Lobe", module = "microfacet", extends = PyDistribution, subclass, frozen)]
 pub(crate) struct PyLobe {
     pub(crate) kind: Kind,
@@ -275,6 +281,13 @@ fn parts(moments: Moments) -> [f32; 3] {
 /// or an array in [1.501, inf]: 2 is GGX, inf is Beckmann. Arrays broadcast with one another, and
 /// with the views and numbers of methods. StudentT reads the default tables; Tables.student_t reads
 /// others.
+///
+/// >>> import microfacet
+/// >>> lobe = microfacet.StudentT(sigma=0.3, gamma=2.5)
+/// >>> round(float(lobe.d([0.0, 0.0, 1.0])), 4)  # 1/(pi sigma^2)
+/// 3.5368
+/// >>> round(float(lobe.albedo(cos_theta=0.8)), 4)
+/// 0.9204
 #[pyclass(name = "StudentT", module = "microfacet", extends = PyLobe, frozen)]
 pub(crate) struct PyStudentT {
     surface: Arc<Surface>,
@@ -340,6 +353,12 @@ impl PyStudentT {
 
 /// A Student-t lobe tilted and turned: roughness sigma along two axes of an ellipsoid whose third
 /// has 1, turned by theta = (x, y, z) in radians about z first, then y, then x.
+///
+/// >>> import microfacet
+/// >>> scale = microfacet.Ellipsoid(sigma=0.3, theta=(0.0, 0.2, 0.0), gamma=2.5)
+/// >>> upright = microfacet.StudentT(sigma=0.3, gamma=2.5)
+/// >>> bool(scale.d([0.0, 0.0, 1.0]) < upright.d([0.0, 0.0, 1.0]))
+/// True
 #[pyclass(name = "Ellipsoid", module = "microfacet", extends = PyLobe, frozen)]
 pub(crate) struct PyEllipsoid {}
 

@@ -33,6 +33,13 @@ const PATIENCE: Duration = Duration::from_millis(20);
 ///
 /// materials names those that are needed of a large library, or of any set: the others are left
 /// out, with the tables of lobes that they alone have.
+///
+/// >>> import microfacet
+/// >>> tables = microfacet.Tables()  # Tables("folder") opens a set that was baked
+/// >>> tables.covers(2.5)
+/// True
+/// >>> tables.student_t(0.3, 2.5)
+/// StudentT(sigma=0.3, gamma=2.5)
 #[pyclass(name = "Tables", module = "microfacet", frozen)]
 pub(crate) struct PyTables {
     pub(crate) set: Arc<Set>,

@@ -1,4 +1,4 @@
-"""Examples in docstrings and in the README."""
+"""Examples in docstrings, in the README and in the description of the package."""
 
 import doctest
 import inspect
@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 import microfacet
+import pytest
 from microfacet import exact
 
 
@@ -15,12 +16,26 @@ def test_examples_of_docstrings():
         assert result.attempted > 0 and result.failed == 0
 
 
-def test_examples_of_the_readme(tmp_path, monkeypatch):
-    text = (Path(__file__).parents[1] / "README.md").read_text()
+def test_help_of_each_class_shows_an_example():
+    for module in [microfacet, exact]:
+        classes = [getattr(module, name) for name in module.__all__]
+        classes = [thing for thing in classes if isinstance(thing, type)]
+        assert classes
+        tests = doctest.DocTestFinder(recurse=False)
+        for thing in classes:
+            (found,) = tests.find(thing)
+            assert found.examples, thing
+            # Else `test_examples_of_docstrings` does not find it.
+            assert thing.__module__ == module.__name__, thing
+
+
+@pytest.mark.parametrize("page", ["README.md", "DESCRIPTION.md"])
+def test_examples_of_pages(page, tmp_path, monkeypatch):
+    text = (Path(__file__).parents[1] / page).read_text()
     blocks = re.findall(r"```python\n(.*?)```", text, re.S)
     # Those of Mitsuba are in docs/mitsuba.md, and its tests.
     blocks = [block for block in blocks if "mitsuba" not in block]
-    assert len(blocks) >= 3
+    assert len(blocks) >= {"README.md": 3, "DESCRIPTION.md": 1}[page]
     monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}
     for block in blocks:

@@ -75,6 +75,29 @@ def test_the_bytes_are_those_of_one_process(
     assert content(tmp_path / "out") == alone
 
 
+def test_round_lobes_of_one_sigma_each(client: Any, tmp_path: Path) -> None:
+    """sigma as one number, of a recipe's text, its file and an iterable: the same bytes."""
+    rows = [("brushed", 0.3, 2.5), ("polished", 0.05, 3.5)]
+    text = "\n".join(
+        f'[[material]]\nname = "{name}"\nsigma = {sigma}\ngamma = {gamma}\n'
+        'fresnel = { metal = "gold" }'
+        for name, sigma, gamma in rows
+    )
+    metals = (
+        {"name": name, "sigma": sigma, "gamma": gamma, "fresnel": {"metal": "gold"}}
+        for name, sigma, gamma in rows
+    )
+    (tmp_path / "library.toml").write_text(text)
+    microfacet.bake(text, tmp_path / "alone", quality="draft", cache=False)
+    for number, scene in enumerate((text, tmp_path / "library.toml", metals)):
+        cache, out = tmp_path / f"cache {number}", tmp_path / f"out {number}"
+        done = farmed(scene, client, out, cache=cache, seconds_per_task=0.01)
+        assert (done.materials, done.baked, done.made_up) == (2, 6, 0)
+        assert content(out) == content(tmp_path / "alone")
+    metal = microfacet.Tables(out).bsdf("polished", compensation="kulla-conty")
+    assert np.isfinite(metal.eval([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8])).all()
+
+
 def test_a_worker_that_is_killed_loses_nothing(
     client: Any, alone: dict[str, bytes], tmp_path: Path
 ) -> None:
