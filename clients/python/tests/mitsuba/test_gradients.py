@@ -87,8 +87,8 @@ def test_colours(compensation: str) -> None:
 
 
 def test_one_roughness_of_an_anisotropic_surface() -> None:
-    bsdf = surfaces.conductor(sigma_x=0.2, sigma_y=0.5, gamma=2.5)
-    agrees(bsdf, "sigma_x.value", 0.2, 1e-3, False)
+    bsdf = surfaces.conductor(sigma_u=0.2, sigma_v=0.5, gamma=2.5)
+    agrees(bsdf, "sigma_u.value", 0.2, 1e-3, False)
 
 
 @pytest.mark.parametrize("compensation", ("none", "kulla_conty"))
