@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from typing import Any
 
 import microfacet.mitsuba
 
@@ -28,7 +29,7 @@ def main() -> None:
     options = parser.parse_args()
 
     metal = {"eta": 0.2, "k": 3.0}
-    surfaces = {
+    surfaces: dict[str, dict[str, Any]] = {
         "roughconductor, ggx": {
             "type": "roughconductor", "distribution": "ggx", "alpha": options.sigma, **metal,
         },
@@ -41,6 +42,11 @@ def main() -> None:
             "type": "student_t_conductor", "gamma": gamma, "sigma": options.sigma,
             "compensation": options.compensation, **metal,
         }  # fmt: skip
+    for names in (("gamma",), ("sigma", "gamma")):
+        surface = dict(surfaces["student_t_conductor, gamma = 2.5"])
+        for name in names:
+            surface[name] = bitmap(0.96 * surface[name], 1.04 * surface[name])
+        surfaces[f"student_t_conductor, texture of {' and '.join(names)}"] = surface
     bsdfs = {name: mi.load_dict(surface) for name, surface in surfaces.items()}
     hits = views(options.samples)
     numbers = np.random.default_rng(1).random((3, options.samples), dtype=np.float32)
@@ -59,17 +65,24 @@ def main() -> None:
                 best[name] = min(best[name], time.perf_counter() - start)
     native = best["roughconductor, ggx"]
     for name, seconds in best.items():
-        print(f"{name:34} {1e9 * seconds / options.samples:6.2f} ns   {seconds / native:5.2f}")
+        print(f"{name:46} {1e9 * seconds / options.samples:6.2f} ns   {seconds / native:5.2f}")
+
+
+def bitmap(low: float, high: float) -> dict[str, Any]:
+    """A texture of random numbers, as a file gives it."""
+    data = np.random.default_rng(3).uniform(low, high, (256, 256, 1)).astype(np.float32)
+    return {"type": "bitmap", "raw": True, "bitmap": mi.Bitmap(data)}
 
 
 def views(count: int) -> mi.SurfaceInteraction3f:
-    """Hits whose views have cosines evenly in [0, 1]."""
+    """Hits anywhere on a texture, whose views have cosines evenly in [0, 1]."""
     rng = np.random.default_rng(2)
     z, azimuth = rng.random(count), 2 * np.pi * rng.random(count)
     radius = np.sqrt(1 - z * z)
     hits = dr.zeros(mi.SurfaceInteraction3f, count)
     w = np.stack([radius * np.cos(azimuth), radius * np.sin(azimuth), z])
     hits.wi = mi.Vector3f(w.astype(np.float32))
+    hits.uv = mi.Point2f(rng.random((2, count), dtype=np.float32))
     return hits
 
 

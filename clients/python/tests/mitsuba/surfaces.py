@@ -61,3 +61,17 @@ def drawn(bsdf: mi.BSDF, si: mi.SurfaceInteraction3f, u: np.ndarray, context: An
 def relative(got: np.ndarray, want: np.ndarray, floor: float) -> float:
     """The largest difference, over the wanted number or the floor."""
     return float(np.max(np.abs(got - want) / np.maximum(np.abs(want), floor)))
+
+
+def steps(*values: float) -> dict[str, Any]:
+    """A texture of some values side by side, each in an equal part of [0, 1] of u."""
+    data = np.tile(np.array(values, np.float32), (2, 1))[..., None]
+    return {
+        "type": "bitmap", "raw": True, "filter_type": "nearest", "wrap_mode": "clamp",
+        "bitmap": mi.Bitmap(data),
+    }  # fmt: skip
+
+
+def place(number: int, count: int) -> list[float]:
+    """Where a texture of :func:`steps` has one of its values."""
+    return [(number + 0.5) / count, 0.5]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 from domains import Elevation, Facets
 from mitsuba.chi2 import BSDFAdapter, ChiSquareTest, SphericalDomain
+from surfaces import place, steps
 
 SIGMAS = (0.05, 0.3, 1.0)
 GAMMAS = (1.6, 2.5, 4.0, math.inf)
@@ -30,8 +32,15 @@ def view(angle: float, below: bool = False) -> list[float]:
     return [math.sin(theta) * math.cos(azimuth), math.sin(theta) * math.sin(azimuth), z]
 
 
-def agree(plugin: str, wi: list[float], domain: Any, tests: int, **properties: Any) -> None:
-    sample, pdf = BSDFAdapter(plugin, {"type": plugin, **properties}, wi=wi)
+def agree(
+    plugin: str,
+    wi: list[float],
+    domain: Any,
+    tests: int,
+    uv: Sequence[float] = (0.5, 0.5),
+    **properties: Any,
+) -> None:
+    sample, pdf = BSDFAdapter(plugin, {"type": plugin, **properties}, wi=wi, uv=uv)
     test = ChiSquareTest(
         domain=domain,
         sample_func=domain.samples(sample),
@@ -79,8 +88,8 @@ def test_conductors(sigma: float, gamma: float) -> None:
     [
         {"sigma": 0.3, "gamma": 1.6, "compensation": "kulla_conty"},
         {"sigma": 1.0, "gamma": 2.5, "f0": 0.5, "compensation": "kulla_conty"},
-        {"sigma_x": 0.1, "sigma_y": 0.6, "gamma": 2.5},
-        {"sigma_x": 0.6, "sigma_y": 0.2, "gamma": "inf"},
+        {"sigma_u": 0.1, "sigma_v": 0.6, "gamma": 2.5},
+        {"sigma_u": 0.6, "sigma_v": 0.2, "gamma": "inf"},
     ],
 )
 def test_broad_lobes_and_anisotropic_ones(more: dict[str, Any]) -> None:
@@ -98,3 +107,25 @@ def test_dielectrics(sigma: float, gamma: float, below: bool) -> None:
         wi = view(angle, below)
         domain = Facets(wi, 1 / ETA if below else ETA) if gamma < 2 else Elevation(wi)
         agree("student_t_dielectric", wi, domain, tests, sigma=sigma, gamma=gamma)
+
+
+#: Of both ends of gamma, both sides of 1.8 and between.
+TEXELS = ((0.3, 1.55), (0.1, 1.7), (0.6, 1.79), (0.3, 1.81), (1.0, 2.0), (0.2, 2.9), (0.4, 12.0))
+
+
+@pytest.mark.parametrize("number", range(len(TEXELS)))
+@pytest.mark.parametrize("surface", ("metal", "compensated metal", "glass", "glass from inside"))
+def test_textures(surface: str, number: int) -> None:
+    """Where textures of sigma and gamma have several values."""
+    sigmas, gammas = zip(*TEXELS)
+    plugin = "student_t_dielectric" if "glass" in surface else "student_t_conductor"
+    more = {"compensation": "kulla_conty"} if "compensated" in surface else {}
+    below = "inside" in surface
+    for angle in ANGLES[1:-1]:
+        wi = view(angle, below)
+        has_poles = "glass" in surface and gammas[number] < 2
+        domain = Facets(wi, 1 / ETA if below else ETA) if has_poles else Elevation(wi)
+        agree(
+            plugin, wi, domain, 84, uv=place(number, len(TEXELS)), sigma=steps(*sigmas),
+            gamma=steps(*gammas), **more,
+        )  # fmt: skip

@@ -11,12 +11,14 @@ CONDUCTOR: list[tuple[dict[str, Any], list[str]]] = [
     ({"gamma": 1.5}, ["gamma = 1.5", "[1.501, inf]", "raise it"]),
     ({"gamma": "large"}, ["gamma = 'large'", "[1.501, inf]", "inf"]),
     ({"gamma": float("nan")}, ["gamma = nan", "[1.501, inf]"]),
-    ({"gamma": {"type": "checkerboard"}}, ["gamma", "the same for the whole surface"]),
+    ({"gamma": {"type": "rgb", "value": [2.0, 3.0, 4.0]}}, ["gamma", "a number or a texture"]),
+    ({"gamma": True}, ["gamma = True", "a number or a texture"]),
     ({"sigma": 0.0}, ["sigma = 0", "[0.0001, 10]"]),
     ({"sigma": 20.0}, ["sigma = 20", "[0.0001, 10]"]),
     ({"sigma": 5.0, "compensation": "turquin"}, ["sigma = 5", "[0.0001, 3]", "none"]),
-    ({"sigma": 0.1, "sigma_x": 0.2}, ["sigma and sigma_x", "remove one"]),
-    ({"sigma_x": 0.2}, ["sigma_y is missing"]),
+    ({"sigma": 0.1, "sigma_u": 0.2}, ["sigma and sigma_u", "remove one"]),
+    ({"sigma_u": 0.2}, ["sigma_v is missing"]),
+    ({"sigma_x": 0.2, "sigma_y": 0.3}, ["'sigma_x'", "its name is sigma_u"]),
     ({"alpha": 0.2}, ["'alpha'", "sigma is what other plugins call alpha"]),
     ({"sgima": 0.2}, ["'sgima'", "did you mean sigma?"]),
     ({"compensation": "heitz"}, ["compensation = 'heitz'", "none, turquin, kulla_conty"]),
@@ -32,7 +34,7 @@ CONDUCTOR: list[tuple[dict[str, Any], list[str]]] = [
     ({"stand_in": 3}, ["stand_in = 3", "true or false"]),
     ({"tables": "/no/such/set"}, ["/no/such/set"]),
     (
-        {"sigma_x": 0.1, "sigma_y": 0.2, "compensation": "kulla_conty"},
+        {"sigma_u": 0.1, "sigma_v": 0.2, "compensation": "kulla_conty"},
         ["anisotropic", "stand_in", "none"],
     ),
 ]
@@ -46,6 +48,10 @@ DIELECTRIC: list[tuple[dict[str, Any], list[str]]] = [
     (
         {"compensation": "turquin", "sigma": {"type": "checkerboard"}},
         ["sigma is a texture", "none"],
+    ),
+    (
+        {"compensation": "kulla_conty", "gamma": {"type": "checkerboard"}},
+        ["gamma is a texture", "make gamma a number", "none"],
     ),
 ]
 
@@ -73,7 +79,7 @@ def refused(plugin: str, properties: dict[str, Any], words: list[str]) -> None:
 def test_the_stand_in_for_an_anisotropic_surface() -> None:
     mi.load_dict(
         {
-            "type": "student_t_conductor", "sigma_x": 0.1, "sigma_y": 0.2,
+            "type": "student_t_conductor", "sigma_u": 0.1, "sigma_v": 0.2,
             "compensation": "kulla_conty", "stand_in": True,
         }
     )  # fmt: skip

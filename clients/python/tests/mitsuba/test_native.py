@@ -19,7 +19,7 @@ ROUGHNESS: list[dict[str, dict[str, float]]] = [
     {"ours": {"sigma": 0.05}, "native": {"alpha": 0.05}},
     {"ours": {"sigma": 0.4}, "native": {"alpha": 0.4}},
     {
-        "ours": {"sigma_x": 0.1, "sigma_y": 0.5},
+        "ours": {"sigma_u": 0.1, "sigma_v": 0.5},
         "native": {"alpha_u": 0.1, "alpha_v": 0.5},
     },
 ]

@@ -64,7 +64,7 @@ def test_a_texture_is_its_value_everywhere(compensation: str) -> None:
 @pytest.mark.parametrize("gamma", (1.6, 2.0, 2.5, "inf"))
 def test_samples_are_those_of_values_and_densities(plugin: str, gamma: Any) -> None:
     """For anisotropic surfaces, whose axes must not be exchanged."""
-    bsdf = getattr(surfaces, plugin)(sigma_x=0.15, sigma_y=0.5, gamma=gamma)
+    bsdf = getattr(surfaces, plugin)(sigma_u=0.15, sigma_v=0.5, gamma=gamma)
     assert mi.has_flag(bsdf.flags(), mi.BSDFFlags.Anisotropic)
     views = directions(50_000, 6, 0.05)
     if plugin == "dielectric":

@@ -1,119 +1,198 @@
-"""Directional albedos of one bounce off a round lobe with F = 1, and their averages.
+"""What one bounce off a round lobe with F = 1 loses to further ones, 1 less its directional albedo,
+and the average of that.
 
-Formulas and tables are those of ``albedo.wgsl`` of the shader export.
+Of splines over roughness, gamma and view: quadratic, quadratic and cubic. They pass through what
+the tables of some gammas have, whose coordinates are those of ``albedo.wgsl`` of the shader export.
 """
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 import drjit as dr
 import mitsuba as mi
+import numpy as np
 
-from .arithmetic import Packets, log_growth, unit
-from .fresnel import F82_SCALE
+from .arithmetic import Packets, horner, log_growth, place, unit
+from .family import GAMMA, shapes
+
+#: Nodes of gamma, nodes of roughness, and cells of the view; of one gamma there is room for more.
+_OF_ALL, _OF_ONE = (64, 149, 64), (1, 297, 192)
 
 
 class Albedos:
-    """The albedos of one gamma and one form of masking, for sigma in [1e-8, 3]; beyond, the ends.
+    """The losses for one form of masking, for sigma in [1e-8, 3]; beyond, those of the ends.
 
-    A moment is a vector (E - 1, bias, F82): E the albedo, bias its part that Schlick's weight
-    (1 - v.m)^5 takes, F82 the moment of (v.m)(1 - v.m)^6 over its peak at v.m = 1/7.
+    They are of one gamma, or of all. Functions of one take no notice of what they are given.
     """
 
-    def __init__(self, shape: Any, correlated: bool) -> None:
-        """``shape``: what ``microfacet.Tables().shape(gamma)`` returns."""
+    def __init__(self, tables: Any, gamma: float | None, correlated: bool) -> None:
+        """``tables``: a set of tables; ``gamma``: the shape, if it is a constant."""
         form = "height_correlated" if correlated else "uncorrelated"
-        self._of = {
+        gammas = gamma_nodes() if gamma is None else [gamma]
+        some = shapes(tables, gammas) if gamma is None else [tables.shape(gamma)]
+        self._of = of = {
             name.partition(".")[2]: value
-            for name, value in shape.members.items()
+            for name, value in some[-1].members.items()
             if name.startswith(form + ".")
         }
-        self._moments = Packets(shape.tables["albedo_" + form])
-        self._averages = Packets(shape.tables["averages_" + form])
+        # The coordinate of a view has kappa = low + more/(2 gamma - 3).
+        kappas = [shape.members[form + ".kappa"] for shape in some]
+        less = 2 * some[0].gamma - 3
+        more = 0.0 if gamma is not None else (kappas[0] - kappas[-1]) * less
+        self._kappa = (kappas[-1], more)
+        self._gammas, self._sigmas, self._views = _OF_ALL if gamma is None else _OF_ONE
+        sigmas = np.linspace(0, 1, self._sigmas)
+        rows = _six(int(of["sigmas"]), sigmas)
+        columns = _six(int(of["views"]), np.linspace(0, 1, self._views + 1))
+        losses, averages = [], []
+        for shape in some:
+            moments = np.asarray(shape.tables["albedo_" + form], np.float64)[:, 0]
+            moments = moments.reshape(int(of["sigmas"]), -1)
+            losses.append(-(rows @ moments @ columns.T))
+            logs = np.asarray(shape.tables["averages_" + form], np.float64)[:, 0]
+            averages.append(_six(len(logs), sigmas) @ logs)
+        #: What is lost by gamma, roughness and view.
+        self._lost = np.stack(losses)
+        self._cells = Packets(self._splines(_cubics(self._lost)).reshape(-1, 4))
+        self._averages = Packets(self._splines(np.stack(averages)[..., None]).reshape(-1, 1))
 
-    def moments(self, sigma: mi.Float, cos_theta: mi.Float, active: mi.Bool = True) -> mi.Vector3f:
-        """The moments of a view. Within 2e-5 of the horizon they are those at its end."""
-        of = self._of
+    def lost(
+        self, sigma: mi.Float, gamma: mi.Float, cos_theta: mi.Float, active: mi.Bool = True
+    ) -> mi.Float:
+        """1 - E of a view, in [0, 1]. Within 2e-5 of the horizon it is that of the end."""
         sigma = self._clamped(sigma)
-        lowest = of["floor"] * (of["slope"] * sigma) / (of["floor"] + of["slope"] * sigma)
-        mu = dr.minimum(dr.maximum(cos_theta, lowest), 1)
-        start = self._view(sigma, lowest)
-        at = (self._view(sigma, mu) - start) / (1 - start)
-        views = int(of["views"])
-        i, of_row = _six(self._coordinate(sigma), int(of["sigmas"]))
-        j, of_view = _six(at, views)
-        first = i * views + j
-        # Less a constant, whose digits the weights would round.
-        middle = self._moments(first + 2 * views + 2, active)
-        total = mi.Vector4f(0)
-        for row, row_weight in enumerate(of_row):
-            part = mi.Vector4f(0)
-            for view, view_weight in enumerate(of_view):
-                node = self._moments(first + (row * views + view), active)
-                part = part + (node - middle) * view_weight
-            total = total + part * row_weight
-        total = total + middle
-        e = dr.clip(total.x, -1, 0)
-        # What a mirror has is left out of the tables.
-        k = 1 - mu
-        fourth = (k * k) * (k * k)
-        tint = F82_SCALE * mu * (fourth * (k * k))
-        return mi.Vector3f(e, total.y + (1 + e) * (fourth * k), total.z + (1 + e) * tint)
+        at = self._view(dr, sigma, self._kappa_of(gamma), cos_theta)
+        cell, w = place(unit(at) * self._views, self._views - 1)
+        cubic = mi.Vector4f(0)
+        for row, weight in self._rows(sigma, gamma):
+            cubic = cubic + self._cells(row * self._views + cell, active) * weight
+        return dr.clip(horner(cubic, w), 0, 1)
 
-    def lost(self, sigma: mi.Float, cos_theta: mi.Float, active: mi.Bool = True) -> mi.Float:
-        """What one bounce loses to further ones, 1 - E, in [0, 1]."""
-        return -self.moments(sigma, cos_theta, active).x
+    def lost_average(
+        self, sigma: mi.Float, gamma: mi.Float, active: mi.Bool = True
+    ) -> mi.Float:
+        """1 - E_avg, weighted by the cosine of the view, with its digits where that is small."""
+        total = mi.Float(0)
+        for row, weight in self._rows(self._clamped(sigma), gamma):
+            total = total + self._averages(row, active).x * weight
+        return dr.minimum(dr.exp(total), 1)
 
-    def averages(self, sigma: mi.Float, active: mi.Bool = True) -> mi.Vector3f:
-        """1 - E_avg, and the averages of bias and F82, weighted by the cosine of the view."""
-        i, weights = _six(self._coordinate(self._clamped(sigma)), int(self._of["average_sigmas"]))
-        total = mi.Vector4f(0)
-        for row, weight in enumerate(weights):
-            total = total + self._averages(i + row, active) * weight
-        return mi.Vector3f(dr.minimum(dr.exp(total.x), 1), total.y, total.z)
-
-    def lost_average(self, sigma: mi.Float, active: mi.Bool = True) -> mi.Float:
-        """1 - E_avg, with its digits where that is small."""
-        return self.averages(sigma, active).x
+    def row(self, sigma: float, gamma: float, cosines: np.ndarray) -> np.ndarray:
+        """What is lost at some cosines, near enough for a density to draw from."""
+        sigma = min(max(sigma, self._of["sigma_min"]), self._of["sigma_max"])
+        i = 0 if self._gammas == 1 else round(gamma_place(gamma))
+        j = round(self._sigma_place(sigma))
+        at = self._view(np, sigma, self._kappa_of(gamma), cosines)
+        lost = np.interp(at, np.linspace(0, 1, self._views + 1), self._lost[i, j])
+        return np.asarray(np.clip(lost, 0, 1))
 
     def _clamped(self, sigma: mi.Float) -> mi.Float:
         return dr.clip(sigma, self._of["sigma_min"], self._of["sigma_max"])
 
-    def _coordinate(self, sigma: mi.Float) -> mi.Float:
-        """The place of a roughness among those of the tables, in [0, 1]."""
+    def _kappa_of(self, gamma: mi.Float) -> mi.Float:
+        low, more = self._kappa
+        return low if more == 0 else low + more / (2 * gamma - 3)
+
+    def _view(self, m: Any, sigma: mi.Float, kappa: mi.Float, mu: mi.Float) -> mi.Float:
+        """The place of a view by its cosine, in [0, 1]; ``m`` is the module of the functions."""
+        of = self._of
+        lowest = of["floor"] * (of["slope"] * sigma) / (of["floor"] + of["slope"] * sigma)
+        nu = of["spread"] * sigma
+
+        def coordinate(mu: Any) -> Any:
+            sine = m.sqrt(m.maximum((1 - mu) * (1 + mu), 1e-30))
+            x = mu / (mu + kappa * sigma * sine)
+            h = mu / (1 + sine)
+            roots = of["share"] * m.sqrt(m.sqrt(x)) + (1 - of["share"]) * m.sqrt(m.sqrt(h))
+            rest = 1 - of["weight"] - of["normal"]
+            return of["weight"] * x + of["normal"] * (nu / (nu + sine)) + rest * roots
+
+        start = coordinate(lowest)
+        return (coordinate(m.minimum(m.maximum(mu, lowest), 1)) - start) / (1 - start)
+
+    def _sigma_place(self, sigma: mi.Float) -> mi.Float:
+        """The place of a roughness among the nodes."""
         of = self._of
         slow = of["slow"] * dr.log(sigma / of["first"])
         coordinate = log_growth(sigma / of["offset"]) + slow + of["linear"] * sigma
-        return (coordinate - of["start"]) / of["range"]
+        return (coordinate - of["start"]) * ((self._sigmas - 1) / of["range"])
 
-    def _view(self, sigma: mi.Float, mu: mi.Float) -> mi.Float:
-        """The coordinate of a view by its cosine, before it is stretched to [0, 1]."""
-        of = self._of
-        sine = dr.safe_sqrt((1 - mu) * (1 + mu))
-        x = mu / (mu + of["kappa"] * sigma * sine)
-        h = mu / (1 + sine)
-        nu = of["spread"] * sigma
-        roots = of["share"] * dr.sqrt(dr.sqrt(x)) + (1 - of["share"]) * dr.sqrt(dr.sqrt(h))
-        rest = 1 - of["weight"] - of["normal"]
-        return of["weight"] * x + of["normal"] * (nu / (nu + sine)) + rest * roots
+    def _rows(self, sigma: mi.Float, gamma: mi.Float) -> list[tuple[mi.UInt32, mi.Float]]:
+        """Rows of coefficients, and their weights."""
+        first, of_sigma = _three(self._sigma_place(sigma), self._sigmas)
+        rows = [(first + i, weight) for i, weight in enumerate(of_sigma)]
+        if self._gammas == 1:
+            return rows
+        first, of_gamma = _three(gamma_place(gamma), self._gammas)
+        first = first * (self._sigmas + 2)
+        return [
+            (first + (row + i * (self._sigmas + 2)), outer * inner)
+            for i, outer in enumerate(of_gamma)
+            for row, inner in rows
+        ]
+
+    def _splines(self, values: np.ndarray) -> np.ndarray:
+        """Coefficients of quadratic splines along the first two axes, by gamma and roughness."""
+        for axis, count in ((1, self._sigmas), (0, self._gammas)):
+            if count > 1:
+                matrix = _through((1 / 8, 3 / 4, 1 / 8), count)
+                values = np.moveaxis(np.tensordot(matrix, values, (1, axis)), 0, axis)
+        return values
 
 
-def _six(x: mi.Float, count: int) -> tuple[mi.UInt32, list[mi.Float]]:
-    """The first of six even nodes about x in [0, 1], with the weights of the polynomial through
-    them.
+def gamma_nodes() -> list[float]:
+    """The shapes of the nodes of all."""
+    low = 2 * GAMMA[0] - 3
+    powers = np.linspace((low / (low + 3)) ** 0.25, 1, _OF_ALL[0])[:-1] ** 4
+    return [GAMMA[0], *(1.5 + 1.5 * powers / (1 - powers)).tolist()[1:], GAMMA[1]]
+
+
+def gamma_place(gamma: mi.Float) -> mi.Float:
+    """The place of a shape among the nodes of all."""
+    low, less = 2 * GAMMA[0] - 3, 2 * gamma - 3
+    start = (low / (low + 3)) ** 0.25
+    return (dr.sqrt(dr.sqrt(less / (less + 3))) - start) * ((_OF_ALL[0] - 1) / (1 - start))
+
+
+def _three(x: mi.Float, count: int) -> tuple[mi.UInt32, list[mi.Float]]:
+    """The first of three coefficients at a place among nodes, and the weights of all."""
+    start = dr.floor(dr.clip(x, 0, count - 1) + 0.5)
+    d = x - start
+    ends = 0.5 * d * d + 0.125
+    return mi.UInt32(start), [ends - 0.5 * d, 1 - 2 * ends, ends + 0.5 * d]
+
+
+@functools.cache
+def _through(spline: tuple[float, ...], count: int) -> np.ndarray:
+    """The matrix (count + 2, count) from values at nodes to the coefficients of the spline through
+    them, of which three have these weights at a node. At both ends differences vanish.
     """
-    at = unit(x) * (count - 1)
-    start = dr.clip(dr.floor(at) - 2, 0, count - 6)
-    a = at - start
-    b, c, d, e, f = a - 1, a - 2, a - 3, a - 4, a - 5
-    low, high = d * e * f, a * b * c
-    weights = [
-        low * (b * c) * (-1 / 120),
-        low * (a * c) * (1 / 24),
-        low * (a * b) * (-1 / 12),
-        high * (e * f) * (1 / 12),
-        high * (d * f) * (-1 / 24),
-        high * (d * e) * (1 / 120),
-    ]
-    return mi.UInt32(start), weights
+    matrix = np.zeros((count + 2, count + 2))
+    for node in range(count):
+        matrix[node, node : node + 3] = spline
+    differences = (1, -3, 3, -1)
+    matrix[-2, : len(differences)] = matrix[-1, -len(differences) :] = differences
+    return np.linalg.inv(matrix)[:, :count]
+
+
+def _cubics(values: np.ndarray) -> np.ndarray:
+    """Cubics between values along the last axis, their slopes and bends continuous."""
+    c = values @ _through((1 / 6, 2 / 3, 1 / 6), values.shape[-1]).T
+    a, b, c, d = (c[..., i : c.shape[-1] - 3 + i] for i in range(4))
+    powers = [(a + 4 * b + c) / 6, (c - a) / 2, (a - 2 * b + c) / 2, (d - 3 * c + 3 * b - a) / 6]
+    return np.stack(powers, axis=-1)
+
+
+def _six(count: int, x: np.ndarray) -> np.ndarray:
+    """The matrix from values at even nodes to those at places in [0, 1], of the polynomials
+    through six nodes about each.
+    """
+    at = x * (count - 1)
+    start = np.clip(np.floor(at) - 2, 0, count - 6)
+    matrix = np.zeros((len(x), count))
+    for i in range(6):
+        others = [(at - start - j) / (i - j) for j in range(6) if j != i]
+        matrix[np.arange(len(x)), start.astype(int) + i] = np.prod(others, axis=0)
+    return matrix

@@ -14,6 +14,9 @@ import numpy as np
 #: The smallest normal number of single precision.
 SMALLEST = 1.17549435e-38
 
+#: The largest quotient, a little below the largest number.
+LARGEST = 3e38
+
 #: The largest density: products and sums of a few of them stay in single precision.
 LARGEST_DENSITY = 1e30
 
@@ -39,11 +42,16 @@ def horner(coefficients: mi.Vector4f, w: mi.Float) -> mi.Float:
 
 def log_growth(x: mi.Float) -> mi.Float:
     """ln(1 + x) for x > -1, with the digits of a small x."""
-    y = x / (2 + x)
+    return dr.select((x >= -0.5) & (x <= 1), x * log_quotient(x), dr.log(1 + x))
+
+
+def log_quotient(x: mi.Float) -> mi.Float:
+    """ln(1 + x)/x for x in [-1/2, 1], by a series whose derivative has its digits, too."""
+    inverse = 1 / (2 + x)
+    y = x * inverse
     q = y * y
     tail = q * (1 / 9 + q * (1 / 11 + q * (1 / 13 + q / 15)))
-    series = 2 * y * (1 + q * (1 / 3 + q * (1 / 5 + q * (1 / 7 + tail))))
-    return dr.select((x >= -0.5) & (x <= 1), series, dr.log(1 + x))
+    return 2 * inverse * (1 + q * (1 / 3 + q * (1 / 5 + q * (1 / 7 + tail))))
 
 
 def place(x: mi.Float, last: int) -> tuple[mi.UInt32, mi.Float]:
@@ -88,19 +96,10 @@ class Line:
         of which is read at its beginning only; ``error``: how far off lines may be, except those
         of the first cubic, which makes them 4 to 256 of each.
         """
-        cubics = np.asarray(cubics, np.float64)[:, None, :]
-
-        def at(w: np.ndarray) -> Any:
-            c = cubics
-            return c[..., 0] + w * (c[..., 1] + w * (c[..., 2] + w * c[..., 3]))
-
         for parts in (4, 8, 16, 32, 64, 128, 256):
-            ends = at(np.arange(parts + 1) / parts)
-            middles = at((np.arange(parts) + 0.5) / parts)
-            off = middles - 0.5 * (ends[:, 1:] + ends[:, :-1])
+            pairs, off = lines(cubics, parts)
             if np.abs(off[1:-1]).max() <= error:
                 break
-        pairs = np.stack([ends[:, :-1], np.diff(ends, axis=1)], axis=-1).reshape(-1, 2)
         self._parts, self._last = parts, len(pairs) - parts
         self._pairs: Any
         if dr.is_jit_v(mi.Float):
@@ -116,6 +115,21 @@ class Line:
         else:
             pair = dr.gather(mi.Vector2f, self._pairs, cell, active)
         return pair.x + w * pair.y
+
+
+def lines(cubics: Any, parts: int) -> tuple[np.ndarray, np.ndarray]:
+    """Beginnings and rises (n * parts, 2) of the lines between even places of cubics (n, 4), and
+    what the middles of these (n, parts) miss.
+    """
+    cubics = np.asarray(cubics, np.float64)[:, None, :]
+
+    def at(w: np.ndarray) -> Any:
+        c = cubics
+        return c[..., 0] + w * (c[..., 1] + w * (c[..., 2] + w * c[..., 3]))
+
+    ends = at(np.arange(parts + 1) / parts)
+    off = at((np.arange(parts) + 0.5) / parts) - 0.5 * (ends[:, 1:] + ends[:, :-1])
+    return np.stack([ends[:, :-1], np.diff(ends, axis=1)], axis=-1).reshape(-1, 2), off
 
 
 class Numbers:

@@ -11,11 +11,10 @@ import drjit as dr
 import mitsuba as mi
 
 from . import parameters
-from .albedo import Albedos
 from .arithmetic import LARGEST_DENSITY
 from .compensation import Account, Losses, account, kulla_conty, turquin
 from .fresnel import Exact, Schlick, White
-from .shape import g2_over_g1
+from .shape import Lobe, g2_over_g1
 from .spectra import blocked, spectrum
 from .surface import round_of, surface_class
 
@@ -36,9 +35,9 @@ def conductor_class() -> type:
         def __init__(self, props: mi.Properties) -> None:
             super().__init__(props, _NAMES)
             self._fresnel, self._colours = _reflectance(props)
-            self._albedos = None
+            self._losses = None
             if self._compensation != "none":
-                self._albedos = Albedos(self._of_gamma, self._correlated)
+                self._losses = Losses(self._tables, self._family, self._correlated)
             flags = self._flags(mi.BSDFFlags.GlossyReflection | mi.BSDFFlags.FrontSide)
             self.m_components = [flags]
             self.m_flags = flags
@@ -48,9 +47,10 @@ def conductor_class() -> type:
             return super()._textures() | self._colours
 
         def parameters_changed(self, keys: Sequence[str] = ()) -> None:
-            self._losses = None
-            if self._albedos is not None:
-                self._losses = Losses(self._albedos, self._round_sigma())
+            super().parameters_changed(keys)
+            if self._losses is not None:
+                gamma = parameters.constant_gamma(self._gamma)
+                self._losses.bind(self._round_sigma(), gamma, self._is_bound)
 
         def sample(
             self,
@@ -65,11 +65,11 @@ def conductor_class() -> type:
                 return bs, spectrum(mi.UnpolarizedSpectrum(0))
             v = si.wi
             active = active & (v.z > 0) & dr.isfinite(dr.squared_norm(v))
-            sigma = self._sigma(si, active)
-            m = self._shape.sample_visible_normal(sigma, v, sample2, active)
+            sigma, lobe = self._sigma(si, active), self._lobe(si, active)
+            m = lobe.sample_visible_normal(sigma, v, sample2, active)
             facing = dr.dot(v, m)
             l = 2 * facing * m - v
-            kept = self._account(si, sigma, active)
+            kept = self._account(si, sigma, lobe, active)
             if kept is not None:
                 assert self._losses is not None
                 is_broad = sample1 >= kept.facets
@@ -78,9 +78,9 @@ def conductor_class() -> type:
                 m = dr.select(is_broad, dr.normalize(v + l), m)
                 facing = dr.dot(v, m)
             active = active & (l.z > 0) & (facing > 0)
-            weight, pdf = self._facets(si, sigma, l, m, facing, active)
+            weight, pdf = self._facets(si, sigma, lobe, l, m, facing, active)
             if kept is not None:
-                value, pdf = self._mixed(kept, sigma, l, weight * pdf, pdf, active)
+                value, pdf = self._mixed(kept, sigma, lobe, l, weight * pdf, pdf, active)
                 weight = value / dr.maximum(pdf, 1e-30)
             bs.wo = l
             bs.pdf = dr.select(active, pdf, 0.0)
@@ -101,53 +101,53 @@ def conductor_class() -> type:
             v = si.wi
             active = active & (v.z > 0) & (wo.z > 0)
             active = active & dr.isfinite(dr.squared_norm(v) + dr.squared_norm(wo))
-            sigma = self._sigma(si, active)
+            sigma, lobe = self._sigma(si, active), self._lobe(si, active)
             # The cosine v.m is half the length of v + l.
             m = v + wo
             length = dr.sqrt(dr.maximum(dr.squared_norm(m), 1e-30))
             weight, pdf = self._facets(
-                si, sigma, wo, m / length, dr.minimum(0.5 * length, 1), active
+                si, sigma, lobe, wo, m / length, dr.minimum(0.5 * length, 1), active
             )
             value = weight * pdf
-            kept = self._account(si, sigma, active)
+            kept = self._account(si, sigma, lobe, active)
             if kept is not None:
-                value, pdf = self._mixed(kept, sigma, wo, value, pdf, active)
+                value, pdf = self._mixed(kept, sigma, lobe, wo, value, pdf, active)
             return spectrum(blocked(value, active)), dr.select(active, pdf, 0.0)
 
         def _facets(
             self,
             si: mi.SurfaceInteraction3f,
             sigma: mi.Vector2f,
+            lobe: Lobe,
             l: mi.Vector3f,
             m: mi.Vector3f,
             facing: mi.Float,
             active: mi.Bool,
         ) -> tuple[mi.UnpolarizedSpectrum, mi.Float]:
             """Light off facets of normal m: f cos/pdf, and its density."""
-            shape = self._shape
-            view = shape.stretch(sigma, si.wi)
-            inverse_area = shape.inverse_area(view, active)
+            view = lobe.stretch(sigma, si.wi)
+            inverse_area = lobe.inverse_area(view, active)
             g1_v = dr.minimum(view.z * inverse_area, 1)
-            g1_l = shape.g1(sigma, l, active)
-            pdf = dr.minimum(0.25 * shape.d(sigma, m) * inverse_area, LARGEST_DENSITY)
+            g1_l = lobe.g1(sigma, l, active)
+            pdf = dr.minimum(0.25 * lobe.d(sigma, m) * inverse_area, LARGEST_DENSITY)
             weight = self._fresnel.at(si, facing, active) * g2_over_g1(g1_v, g1_l, self._correlated)
             if self._compensation == "turquin":
                 assert self._losses is not None
                 f0 = self._fresnel.at(si, mi.Float(1), active)
-                lost = self._losses.lost(round_of(sigma), si.wi.z, active)
+                lost = self._losses.lost(round_of(sigma), lobe.gamma, si.wi.z, active)
                 weight = weight * turquin(lost, f0)
             if self._reflectance is not None:
                 weight = weight * self._reflectance.eval(si, active)
             return weight, pdf
 
         def _account(
-            self, si: mi.SurfaceInteraction3f, sigma: mi.Vector2f, active: mi.Bool
+            self, si: mi.SurfaceInteraction3f, sigma: mi.Vector2f, lobe: Lobe, active: mi.Bool
         ) -> Account | None:
             if self._compensation != "kulla_conty":
                 return None
             assert self._losses is not None
             average = self._fresnel.average(si, active)
-            kept = account(self._losses, round_of(sigma), si.wi, average, active)
+            kept = account(self._losses, round_of(sigma), lobe.gamma, si.wi, average, active)
             if self._reflectance is not None:
                 kept.bounces = kept.bounces * self._reflectance.eval(si, active)
             return kept
@@ -156,6 +156,7 @@ def conductor_class() -> type:
             self,
             kept: Account,
             sigma: mi.Vector2f,
+            lobe: Lobe,
             l: mi.Vector3f,
             value: mi.UnpolarizedSpectrum,
             pdf: mi.Float,
@@ -163,11 +164,11 @@ def conductor_class() -> type:
         ) -> tuple[mi.UnpolarizedSpectrum, mi.Float]:
             """Value and density of facets together with those of the broad lobe."""
             assert self._losses is not None
-            lost = self._losses.lost(round_of(sigma), l.z, active)
-            lobe = kulla_conty(kept.lost, lost, kept.average) * l.z
+            lost = self._losses.lost(round_of(sigma), lobe.gamma, l.z, active)
+            value_of_broad = kulla_conty(kept.lost, lost, kept.average) * l.z
             broad = self._losses.broad.pdf(kept.row, l.z, active)
             return (
-                value + kept.bounces * lobe,
+                value + kept.bounces * value_of_broad,
                 kept.facets * pdf + (1 - kept.facets) * broad,
             )
 

@@ -27,7 +27,10 @@ class Curve:
     def __init__(self, values: Any) -> None:
         """``values``: 257 numbers."""
         node, values = np.arange(CELLS + 1), np.asarray(values, np.float64)
-        ends = (values[np.clip(node + shift, 0, CELLS)] for shift in (-1, 0, 1, 2))
+        # Next to the normal it may bend too sharply for a mirror image: a parabola goes on.
+        a, b, c = values[-3:]
+        values = np.append(values, a - 3 * b + 3 * c)
+        ends = (values[np.clip(node + shift, 0, CELLS + 1)] for shift in (-1, 0, 1, 2))
         self._cells = Packets(np.stack(_cubics(*ends), axis=1))
 
     def __call__(self, cos_theta: mi.Float, active: mi.Bool = True) -> mi.Float:

@@ -16,7 +16,7 @@ from .arithmetic import LARGEST_DENSITY
 from .compensation import kulla_conty, turquin
 from .energy import Energy
 from .interface import Facet, between, drawn, either, steep
-from .shape import g2_over_g1
+from .shape import Lobe, g2_over_g1
 from .spectra import blocked, spectrum
 from .surface import surface_class
 
@@ -36,6 +36,9 @@ class Seen:
     #: The factor on transmitted light: (n_v/n_l)^2 of radiance, 1 of importance.
     scale: mi.Float
     sigma: mi.Vector2f
+    lobe: Lobe
+    #: Whether the density of refracted light has poles.
+    has_pole: bool | mi.Bool
     #: Which events are asked for.
     reflects: bool
     transmits: bool
@@ -70,19 +73,13 @@ def dielectric_class() -> type:
             self._index = parameters.index(props)
             self._eta = mi.Float(self._index)
             self._transmittance = parameters.reflectance(props, "specular_transmittance")
-            if self._compensation != "none" and self._round_sigma() is None:
-                raise ValueError(
-                    "compensation of a dielectric has albedos of one roughness, and sigma is a"
-                    " texture: make sigma a number, or set compensation to none"
-                )
-            sides = self._flags(mi.BSDFFlags.FrontSide | mi.BSDFFlags.BackSide)
-            self._has_pole = self._gamma < 2
-            refraction = transmission | only_sampled if self._has_pole else transmission
-            self.m_components = [
-                reflection | sides,
-                refraction | sides | mi.BSDFFlags.NonSymmetric,
-            ]
-            self.m_flags = self.m_components[0] | self.m_components[1]
+            if self._compensation != "none":
+                for name, one in (("sigma", self._round_sigma()), ("gamma", self._bound_gamma)):
+                    if one is None:
+                        raise ValueError(
+                            f"compensation of a dielectric has albedos of one {name}, and {name} is"
+                            f" a texture: make {name} a number, or set compensation to none"
+                        )
             self._energy: Energy | None = None
             self.parameters_changed()
 
@@ -94,6 +91,16 @@ def dielectric_class() -> type:
                 callback.put("eta", self._eta, flags)
 
         def parameters_changed(self, keys: Sequence[str] = ()) -> None:
+            super().parameters_changed(keys)
+            gamma = parameters.constant_gamma(self._gamma)
+            sides = self._flags(mi.BSDFFlags.FrontSide | mi.BSDFFlags.BackSide)
+            has_pole = gamma is None or gamma < 2
+            refraction = transmission | only_sampled if has_pole else transmission
+            self.m_components = [
+                reflection | sides,
+                refraction | sides | mi.BSDFFlags.NonSymmetric,
+            ]
+            self.m_flags = self.m_components[0] | self.m_components[1]
             if self._compensation == "none":
                 eta = parameters.value(self._eta)
                 parameters.check_index(eta, f"eta = {eta:g}")
@@ -102,7 +109,7 @@ def dielectric_class() -> type:
                     dr.make_opaque(self._eta)
                 return
             sigma = self._round_sigma()
-            albedo = self._tables.dielectric_albedo(sigma, self._gamma, self._index, self._masking)
+            albedo = self._tables.dielectric_albedo(sigma, gamma, self._index, self._masking)
             self._energy = Energy(albedo, self._index)
 
         def sample(
@@ -117,7 +124,7 @@ def dielectric_class() -> type:
             bs = dr.zeros(mi.BSDFSample3f)
             if not (seen.reflects or seen.transmits):
                 return bs, spectrum(mi.UnpolarizedSpectrum(0))
-            m = self._shape.sample_visible_normal(seen.sigma, seen.v, sample2, active)
+            m = seen.lobe.sample_visible_normal(seen.sigma, seen.v, sample2, active)
             if self._compensation != "kulla_conty":
                 l, facet = drawn(seen.eta, seen.v, m, sample1, seen.chance())
                 delta = self._only_sampled(seen, l, facet)
@@ -138,7 +145,7 @@ def dielectric_class() -> type:
                 white, _, chance = self._facets(si, seen, l, facet, active & delta)
                 alone = white / dr.maximum(p * chance, 1e-30)
                 l = dr.select(is_facet, l, broad)
-                facet = either(is_facet, facet, between(seen.eta, seen.v, l, self._has_pole))
+                facet = either(is_facet, facet, between(seen.eta, seen.v, l, seen.has_pole))
                 value, pdf = self._mixed(si, seen, l, facet, active)
                 weight = dr.select(delta, alone, value / dr.maximum(pdf, 1e-30))
                 facet.sends = facet.sends | (~is_facet if dr.is_jit_v(mi.Float) else not is_facet)
@@ -168,7 +175,7 @@ def dielectric_class() -> type:
                 active = active & (l.z < 0)
             if not seen.transmits:
                 active = active & (l.z > 0)
-            facet = between(seen.eta, seen.v, l, self._has_pole)
+            facet = between(seen.eta, seen.v, l, seen.has_pole)
             if self._compensation == "kulla_conty":
                 value, pdf = self._mixed(si, seen, l, facet, active)
             else:
@@ -179,9 +186,9 @@ def dielectric_class() -> type:
 
         def _only_sampled(self, seen: Seen, l: mi.Vector3f, facet: Facet) -> mi.Bool:
             """Whether a drawn facet is too steep to be found again from its light."""
-            if not self._has_pole:
+            if seen.has_pole is False:
                 return mi.Bool(False)
-            found = between(seen.eta, seen.v, l, True)
+            found = between(seen.eta, seen.v, l, seen.has_pole)
             near = (facet.m.z < 2 * steep(seen.eta)) & facet.sends
             return near & ((facet.reflects | found.sends) == False)  # noqa: E712
 
@@ -201,6 +208,7 @@ def dielectric_class() -> type:
             above = si.wi.z > 0
             sign = dr.select(above, mi.Float(1), mi.Float(-1))
             eta = dr.select(above, self._eta, 1 / self._eta)
+            lobe = self._lobe(si, active)
             radiance = ctx.mode == mi.TransportMode.Radiance
             seen = Seen(
                 v=sign * si.wi,
@@ -209,6 +217,8 @@ def dielectric_class() -> type:
                 eta=eta,
                 scale=1 / (eta * eta) if radiance else mi.Float(1),
                 sigma=self._sigma(si, active),
+                lobe=lobe,
+                has_pole=lobe.gamma < 2,
                 reflects=ctx.is_enabled(reflection, 0),
                 transmits=ctx.is_enabled(transmission, 1),
             )
@@ -225,13 +235,13 @@ def dielectric_class() -> type:
             """Light off facets: f cos over a density, that density, and the chance of the event, by
             which it is multiplied.
             """
-            shape, reflects = self._shape, facet.reflects
-            view = shape.stretch(seen.sigma, seen.v)
-            inverse_area = shape.inverse_area(view, active)
+            lobe, reflects = seen.lobe, facet.reflects
+            view = lobe.stretch(seen.sigma, seen.v)
+            inverse_area = lobe.inverse_area(view, active)
             g1_v = dr.minimum(view.z * inverse_area, 1)
             # A transmitted light is as its facet's other side sees it.
-            g1_l = shape.g1(seen.sigma, dr.select(reflects, l, -l), active)
-            base = facet.jacobian * shape.d(seen.sigma, facet.m) * inverse_area
+            g1_l = lobe.g1(seen.sigma, dr.select(reflects, l, -l), active)
+            base = facet.jacobian * lobe.d(seen.sigma, facet.m) * inverse_area
             base = dr.select(facet.sends, dr.minimum(base, LARGEST_DENSITY), 0.0)
             white = facet.share * g2_over_g1(g1_v, g1_l, self._correlated)
             white = white * dr.select(reflects, 1.0, seen.scale)

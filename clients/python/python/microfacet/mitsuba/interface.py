@@ -62,7 +62,9 @@ def steep(eta: mi.Float) -> mi.Float:
     return dr.minimum(_STEEP * (1 + eta) / dr.abs(1 - eta), _STEEPEST)
 
 
-def between(eta: mi.Float, v: mi.Vector3f, l: mi.Vector3f, has_pole: bool) -> Facet:
+def between(
+    eta: mi.Float, v: mi.Vector3f, l: mi.Vector3f, has_pole: bool | mi.Bool
+) -> Facet:
     """The facet that sends v to l. ``has_pole``: those that are only sampled send nothing."""
     reflects = l.z > 0
     h = v + dr.select(reflects, 1.0, eta) * l
@@ -70,8 +72,8 @@ def between(eta: mi.Float, v: mi.Vector3f, l: mi.Vector3f, has_pole: bool) -> Fa
     m = h * (dr.select(h.z < 0, -1.0, 1.0) / length)
     cos_v, cos_l = dr.dot(v, m), dr.dot(l, m)
     sends = (cos_v > 0) & dr.select(reflects, cos_l > 0, cos_l < 0)
-    if has_pole:
-        sends = sends & (reflects | (m.z >= steep(eta)))
+    if has_pole is not False:
+        sends = sends & (reflects | (m.z >= dr.select(has_pole, steep(eta), 0.0)))
     facing = dr.clip(cos_v, _LEAST, 1)
     refracted = dr.clip(-cos_l, _LEAST, 1)
     share = dr.select(

@@ -15,7 +15,7 @@ import numpy as np
 from .arithmetic import horner, place, unit
 
 if TYPE_CHECKING:
-    from .shape import Shape, Stretched
+    from .shape import Lobe, Stretched
 
 #: What a normal's cosine is raised to, so that D of it is finite.
 _LEAST_COSINE = 1e-18
@@ -47,7 +47,7 @@ def cap_normal(sigma: mi.Vector2f, v: mi.Vector3f, u: mi.Point2f) -> mi.Vector3f
 
 
 def table_normal(
-    shape: Shape,
+    lobe: Lobe,
     sigma: mi.Vector2f,
     view: Stretched,
     v: mi.Vector3f,
@@ -57,14 +57,14 @@ def table_normal(
     """A visible normal by inverting the distributions of two slopes: x : z in the plane of
     incidence, and t : tz across it in units of sqrt(z^2 + s x^2).
     """
-    of = shape.members
-    far = shape.across(_end(u.y) * of["across_scale"], active)
+    of = lobe.members
+    far = lobe.across(_end(u.y) * of["across_scale"], active)
     t = dr.select(u.y > 0.5, 1 - far, far - 1)
     tz = far * (2 - far)
 
     tall = dr.sqrt(view.rho * view.rho + view.z * view.z)
     steep = tall + view.z
-    if shape.heavy is None:
+    if not lobe.has_heavy:
         rest = 1 - view.z / (view.rho + tall)
     else:
         # Next to normal incidence the other form loses digits, which the narrow cells there need.
@@ -75,10 +75,10 @@ def table_normal(
     at = dr.maximum(at, of["rows"] - of["rows_third"] * rest)
 
     along = unit(u.x)
-    if shape.heavy is None:
-        x, z = _table_slope(shape, along, at, active)
+    if lobe.has_heavy:
+        x, z = _slope_of_either_part(lobe, along, at, active)
     else:
-        x, z = _slope_of_either_part(shape, along, at, active)
+        x, z = _table_slope(lobe, along, at, active)
 
     # Half of the normal's length in the plane of incidence, squeezed by s.
     norm = dr.sqrt(dr.maximum(z * z + (4 * of["s"]) * (x * x), 1e-36))
@@ -102,33 +102,29 @@ def _end(u: mi.Float) -> mi.Float:
 
 
 def _table_slope(
-    shape: Shape, along: mi.Float, at: mi.Float, active: mi.Bool
+    lobe: Lobe, along: mi.Float, at: mi.Float, active: mi.Bool
 ) -> tuple[mi.Float, mi.Float]:
     """Half a slope x : z by tables: linear between the views, a cubic along the number."""
-    of = shape.members
+    of = lobe.members
     numbers = int(of["numbers"])
     row, between = place(at, int(of["rows"]))
     cell, w = place(_end(along) * of["along_scale"], numbers - 1)
     second = along > 0.5
     low = (2 * row + dr.select(second, mi.UInt32(1), mi.UInt32(0))) * numbers + cell
-    a = shape.slopes(low, active)
-    b = shape.slopes(low + 2 * numbers, active)
     # g, the distance of the half tangent from the end of its half, so that the slope is
     # 2(1 - g)/(g(2 - g)).
-    g = horner(a + between * (b - a), w)
+    g = horner(lobe.cubic(low, between, 2 * numbers, active), w)
     return dr.select(second, 1 - g, g - 1), g * (2 - g)
 
 
 def _slope_of_either_part(
-    shape: Shape, along: mi.Float, at: mi.Float, active: mi.Bool
+    lobe: Lobe, along: mi.Float, at: mi.Float, active: mi.Bool
 ) -> tuple[mi.Float, mi.Float]:
     """The same for gamma < 1.8, where a closed form draws what tables cannot hold, chosen by the
     end of the number.
     """
-    of = shape.members
-    assert shape.heavy is not None
-    share = shape.heavy(at * of["heavy_per_row"], active)
-    rest = 1 - share
+    of = lobe.members
+    share, rest = lobe.heavy(at * of["heavy_per_row"], active)
     is_heavy = along > rest
     number = dr.minimum((1 - along) / dr.maximum(share, 1e-18), 1)
     # (1 + s x^2)^(-1/2) = number^exponent, at least 2^-100.
@@ -137,7 +133,7 @@ def _slope_of_either_part(
     zeta = dr.exp2(power)
     # The number has rounded what 1 - zeta rounds.
     heavy_x = 0.5 * dr.sqrt(dr.maximum((1 - zeta) * (1 + zeta), 1e-36))
-    x, z = _table_slope(shape, dr.minimum(along / dr.maximum(rest, 1e-18), 1), at, active)
+    x, z = _table_slope(lobe, dr.minimum(along / dr.maximum(rest, 1e-18), 1), at, active)
     return (
         dr.select(is_heavy, heavy_x, x),
         dr.select(is_heavy, zeta * of["heavy_root_s"], z),

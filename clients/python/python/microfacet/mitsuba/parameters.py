@@ -8,6 +8,9 @@ from typing import Any, Iterable
 
 import drjit as dr
 import mitsuba as mi
+import numpy as np
+
+from .family import GAMMA
 
 #: Roughness below makes facets that single precision cannot tell apart, beyond ones that are
 #: vertical.
@@ -21,14 +24,16 @@ _MASKINGS = ("height-correlated", "uncorrelated")
 #: Why an anisotropic surface has no compensation.
 ANISOTROPIC = (
     "compensation has no albedos of anisotropic lobes: set stand_in to true, and the round lobe of"
-    " sqrt(sigma_x sigma_y) stands in, which gives back too much or too little light; or set"
+    " sqrt(sigma_u sigma_v) stands in, which gives back too much or too little light; or set"
     " compensation to none"
 )
 
 _HINTS = {
     "alpha": "sigma is what other plugins call alpha",
-    "alpha_u": "sigma_x is what other plugins call alpha_u",
-    "alpha_v": "sigma_y is what other plugins call alpha_v",
+    "alpha_u": "sigma_u is what other plugins call alpha_u",
+    "alpha_v": "sigma_v is what other plugins call alpha_v",
+    "sigma_x": "its name is sigma_u, as alpha_u of other plugins",
+    "sigma_y": "its name is sigma_v, as alpha_v of other plugins",
     "distribution": "gamma = 2 is ggx, and gamma = inf beckmann",
 }
 
@@ -81,23 +86,30 @@ def flag(props: mi.Properties, name: str) -> bool:
     return value
 
 
-def gamma(props: mi.Properties) -> float:
-    """The shape, a constant in [1.501, inf], also as a word."""
-    value = props.get("gamma", 2.0)
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        given = repr(value) if isinstance(value, str) else type(value).__name__
-        raise ValueError(
-            f"gamma = {given} must be a number in [1.501, inf], the same for the whole surface"
-            ' (2 is GGX, "inf" is Beckmann)'
-        ) from None
-    if not number >= 1.501:
-        raise ValueError(
-            f"gamma = {number:g} lies outside [1.501, inf]: towards 1.5 one bounce returns no"
-            " light; raise it, or leave it out for GGX (2)"
-        )
-    return number
+def gamma(props: mi.Properties) -> mi.Texture:
+    """The shape: a number in [1.501, inf], also as a word, or a texture."""
+    given = props.get("gamma", 2.0)
+    if isinstance(given, (int, float, str)) and not isinstance(given, bool):
+        try:
+            number = float(given)
+        except ValueError:
+            number = math.nan
+        if not number >= GAMMA[0]:
+            raise ValueError(
+                f"gamma = {given!r} must be a number in [1.501, inf] or a texture (2 is GGX, \"inf\""
+                " is Beckmann): towards 1.5 one bounce returns no light; raise it, or leave it out"
+                " for GGX"
+            )
+        return mi.load_dict({"type": "uniform", "value": min(number, GAMMA[1])})
+    _refuse_colours(props, "gamma")
+    return props.get_texture("gamma")
+
+
+def _refuse_colours(props: mi.Properties, name: str) -> None:
+    """Raises ``ValueError`` for what is neither a number nor a texture."""
+    kinds = mi.Properties.Type
+    if props.type(name) in (kinds.String, kinds.Color, kinds.Bool):
+        raise ValueError(f"{name} = {props[name]} must be a number or a texture")
 
 
 def number_in(
@@ -110,18 +122,17 @@ def number_in(
 
 
 def sigmas(props: mi.Properties) -> tuple[mi.Texture, mi.Texture]:
-    """The roughness along x and y; the same texture twice where it is isotropic."""
-    refuse_together(props, "sigma", ("sigma_x", "sigma_y"), "sigma is both of them")
-    for name in ("sigma", "sigma_x", "sigma_y"):
+    """The roughness along u and v; the same texture twice where it is isotropic."""
+    refuse_together(props, "sigma", ("sigma_u", "sigma_v"), "sigma is both of them")
+    for name in ("sigma", "sigma_u", "sigma_v"):
         if name in props:
-            if props.type(name) in (mi.Properties.Type.String, mi.Properties.Type.Color):
-                raise ValueError(f"{name} = {props[name]} must be a number or a texture")
+            _refuse_colours(props, name)
             number_in(props, name, *SIGMA, "smoother is a mirror, rougher is vertical")
-    if ("sigma_x" in props) != ("sigma_y" in props):
-        missing = "sigma_y" if "sigma_x" in props else "sigma_x"
-        raise ValueError(f"{missing} is missing: give sigma_x and sigma_y, or sigma for both")
-    if "sigma_x" in props:
-        return props.get_texture("sigma_x"), props.get_texture("sigma_y")
+    if ("sigma_u" in props) != ("sigma_v" in props):
+        missing = "sigma_v" if "sigma_u" in props else "sigma_u"
+        raise ValueError(f"{missing} is missing: give sigma_u and sigma_v, or sigma for both")
+    if "sigma_u" in props:
+        return props.get_texture("sigma_u"), props.get_texture("sigma_v")
     both = props.get_texture("sigma", 0.1)
     return both, both
 
@@ -146,13 +157,13 @@ def set_of_tables(props: mi.Properties) -> Any:
 
 def check_albedos(props: mi.Properties, stand_in: bool) -> None:
     """Raises ``ValueError`` for a roughness that compensation has no albedos of."""
-    for name in ("sigma", "sigma_x", "sigma_y"):
+    for name in ("sigma", "sigma_u", "sigma_v"):
         if name in props:
             why = "compensation has albedos up to there; lower it, or set compensation to none"
             number_in(props, name, SIGMA[0], SIGMA_OF_ALBEDOS, why)
-    if "sigma_x" not in props or stand_in:
+    if "sigma_u" not in props or stand_in:
         return
-    x, y = props["sigma_x"], props["sigma_y"]
+    x, y = props["sigma_u"], props["sigma_v"]
     if not (isinstance(x, (int, float)) and x == y):
         raise ValueError(ANISOTROPIC)
 
@@ -164,11 +175,11 @@ def constant(texture: mi.Texture) -> mi.Float | None:
     return texture.eval_1(dr.zeros(mi.SurfaceInteraction3f), True)
 
 
-def round_sigma(sigma_x: mi.Texture, sigma_y: mi.Texture, stand_in: bool) -> float | None:
-    """sqrt(sigma_x sigma_y) where neither varies, for compensation; ``ValueError`` if they differ
+def round_sigma(sigma_u: mi.Texture, sigma_v: mi.Texture, stand_in: bool) -> float | None:
+    """sqrt(sigma_u sigma_v) where neither varies, for compensation; ``ValueError`` if they differ
     and the round lobe may not stand in.
     """
-    x, y = constant(sigma_x), constant(sigma_y)
+    x, y = constant(sigma_u), constant(sigma_v)
     if x is None or y is None:
         return None
     low, high = SIGMA[0], SIGMA_OF_ALBEDOS
@@ -176,6 +187,26 @@ def round_sigma(sigma_x: mi.Texture, sigma_y: mi.Texture, stand_in: bool) -> flo
     if x != y and not stand_in:
         raise ValueError(ANISOTROPIC)
     return math.sqrt(x * y)
+
+
+def constant_gamma(texture: mi.Texture) -> float | None:
+    """The shape where it is the same everywhere, in [1.501, inf], as it was written; else none."""
+    found = constant(texture)
+    if found is None:
+        return None
+    gamma = max(float(f"{value(found):.7g}"), GAMMA[0])
+    return gamma if gamma < 0.99 * GAMMA[1] else math.inf
+
+
+def range_of_gamma(texture: mi.Texture) -> tuple[float, float]:
+    """The least and the largest shape of a texture, in [1.501, 1e18], as far as it is known."""
+    one, values = constant_gamma(texture), mi.traverse(texture)
+    if one is not None:
+        return min(one, GAMMA[1]), min(one, GAMMA[1])
+    if "data" not in values:
+        return GAMMA
+    data = np.asarray(values["data"])
+    return float(np.clip(data.min(), *GAMMA)), float(np.clip(data.max(), *GAMMA))
 
 
 def value(number: mi.Float) -> float:
@@ -189,15 +220,15 @@ def highest_sigma(compensation: str) -> float:
 
 
 def sigma_at(
-    sigma_x: mi.Texture,
-    sigma_y: mi.Texture,
+    sigma_u: mi.Texture,
+    sigma_v: mi.Texture,
     si: mi.SurfaceInteraction3f,
     active: mi.Bool,
     highest: float,
 ) -> mi.Vector2f:
-    """The roughness along x and y, clamped to what :func:`highest_sigma` allows."""
-    x = dr.clip(sigma_x.eval_1(si, active), SIGMA[0], highest)
-    y = x if sigma_y is sigma_x else dr.clip(sigma_y.eval_1(si, active), SIGMA[0], highest)
+    """The roughness along u and v, clamped to what :func:`highest_sigma` allows."""
+    x = dr.clip(sigma_u.eval_1(si, active), SIGMA[0], highest)
+    y = x if sigma_v is sigma_u else dr.clip(sigma_v.eval_1(si, active), SIGMA[0], highest)
     return mi.Vector2f(x, y)
 
 

@@ -12,8 +12,8 @@ from typing import Any
 import drjit as dr
 import mitsuba as mi
 
+from .arithmetic import LARGEST, SMALLEST, Line, Packets, log_growth, unit
 from .normals import cap_normal, slope_packets, table_normal
-from .arithmetic import SMALLEST, Line, Packets, log_growth, unit
 
 #: The least squared length of a horizontal part; anything shorter is upright.
 _UPRIGHT = 1e-36
@@ -35,30 +35,27 @@ class Stretched:
     z: mi.Float
 
 
-class Shape:
-    """The Student-t lobe of one gamma, for any roughness.
+class Lobe:
+    """A Student-t lobe of a gamma, for any roughness.
 
     Directions are unit vectors of the tangent frame, in which the normal of the surface is
-    (0, 0, 1). ``sigma`` is (sigma_x, sigma_y), the alpha of GGX and Beckmann, in [1e-4, 1e3].
-    All is one-sided: what is asked of a direction below the horizon has no meaning, but is finite.
-    Negate a direction on the other side of a transmitting surface; facets stay where they are.
-    Gamma is a constant: formulas of GGX (2) and Beckmann (inf) replace tables where they can.
+    (0, 0, 1). ``sigma`` is that along the two tangents, the alpha of GGX and Beckmann, in
+    [1e-4, 1e3]. All is one-sided: what is asked of a direction below the horizon has no meaning,
+    but is finite. Negate a direction on the other side of a transmitting surface; facets stay
+    where they are.
+
+    Here is what :class:`Shape`, of a gamma that is a constant, and a lobe of
+    :class:`.family.Family`, of one that differs from hit to hit, have in common. They have the
+    tables.
     """
 
-    def __init__(self, shape: Any) -> None:
-        """``shape``: what ``microfacet.Tables().shape(gamma)`` returns."""
-        members, tables = shape.members, shape.tables
-        self.gamma: float = shape.gamma
-        self.is_ggx = members["is_ggx"] > 0
-        self.members: dict[str, float] = members
-        self._s = members["d_s"]
-        self._power = members["d_power"]
-        if not self.is_ggx:
-            # The first cubic across is that of numbers within 1e-6 of 0 and 1.
-            self._masking = Line(tables["masking"], 5e-9)
-            self.across = Line(tables["across"], 1e-6)
-            self.slopes = Packets(slope_packets(tables["slopes"]))
-            self.heavy = Line(tables["heavy"], 1e-7) if members["heavy_per_row"] > 0 else None
+    #: The shape, and the numbers of the tables' description by name; each is a number of Python
+    #: where it is the same everywhere.
+    gamma: Any
+    members: dict[str, Any]
+    #: Whether a closed form draws some of the normals, and whether all come from spherical caps.
+    has_heavy: bool
+    is_ggx = False
 
     def stretch(self, sigma: mi.Vector2f, w: mi.Vector3f) -> Stretched:
         """``w`` as the surface of roughness 1 sees it, before normalisation."""
@@ -74,17 +71,15 @@ class Shape:
 
     def inverse_area(self, w: Stretched, active: mi.Bool = True) -> mi.Float:
         """1 over the area of the microsurface seen from a direction, G1/z; finite at grazing."""
-        if self.is_ggx:
-            return 2 / (w.z + dr.sqrt(dr.maximum(w.square, _UPRIGHT) + w.z * w.z))
-        cells = self.members["masking_cells"]
+        cells, crowded = self.members["masking_cells"], self.members["masking_crowded"]
         across = self.members["kappa"] * w.rho
-        area = w.z + across
-        inverse = 1 / area
-        if self.members["masking_crowded"] > 0:
-            at = 1 - dr.sqrt(unit(across * inverse))
+        inverse = 1 / (w.z + across)
+        # Python has a condition that is the same everywhere.
+        if isinstance(crowded, float):
+            at = 1 - dr.sqrt(unit(across * inverse)) if crowded else w.z * inverse
         else:
-            at = w.z * inverse
-        return self._masking(at * cells, active) * (cells * inverse)
+            at = dr.select(crowded > 0, 1 - dr.sqrt(unit(across * inverse)), w.z * inverse)
+        return self.masking(at * cells, active) * (cells * inverse)
 
     def g1(self, sigma: mi.Vector2f, w: mi.Vector3f, active: mi.Bool = True) -> mi.Float:
         """Smith's masking of a direction, in [0, 1]; 0 at and below the horizon."""
@@ -101,30 +96,11 @@ class Shape:
         0 at and below the horizon; at most the largest number of single precision.
         """
         x, y = m.x / sigma.x, m.y / sigma.y
-        z2 = m.z * m.z
-        slope2 = x * x + y * y
-        part = self._s * slope2
-        b = dr.maximum(z2 + part, SMALLEST)
         above = m.z > 0
-        # The root of pi sigma_x sigma_y D = b^-gamma z^(2 gamma - 4).
-        if self.is_ggx:
-            root = 1 / b
-        elif math.isinf(self.gamma):
-            z2 = dr.select(above, dr.maximum(z2, SMALLEST), 1.0)
-            root = dr.exp(-0.5 * slope2 / z2) / z2
-        else:
-            root = dr.exp2(self._power * self._growth(z2, part)) / b
+        root = self.root_of_d(m.z * m.z, x * x + y * y, above)
         scale = 1 / dr.sqrt(math.pi * sigma.x * sigma.y)
         limited = dr.minimum(scale * dr.minimum(root, 1e30), _LARGEST_ROOT)
         return dr.select(above, limited * limited, 0.0)
-
-    def _growth(self, z2: mi.Float, part: mi.Float) -> mi.Float:
-        """log2(1 + part/z^2)."""
-        ratio = dr.minimum(part / dr.maximum(z2, SMALLEST), 3e38)
-        # Up to a power of 4 what 1 + x rounds away is 1e-6 of D.
-        if abs(self._power) <= 4:
-            return dr.log2(1 + ratio)
-        return log_growth(ratio) * (1 / math.log(2))
 
     def sample_visible_normal(
         self, sigma: mi.Vector2f, v: mi.Vector3f, u: mi.Point2f, active: mi.Bool = True
@@ -145,6 +121,89 @@ class Shape:
         """The density of these, (v.m) D(m) G1(v)/(v.n) per steradian; 0 where m is not seen."""
         area = self.inverse_area(self.stretch(sigma, v), active)
         return dr.maximum(dr.dot(v, m), 0) * self.d(sigma, m) * area
+
+    def root_of_d(self, z2: mi.Float, slope2: mi.Float, above: mi.Bool) -> mi.Float:
+        """The root of pi sigma_u sigma_v D = b^-gamma z^(2 gamma - 4), b = z^2 + s slope^2."""
+        raise NotImplementedError
+
+    def masking(self, at: mi.Float, active: mi.Bool) -> mi.Float:
+        """G1 over its coordinate and the number of its cells, at a place among them."""
+        raise NotImplementedError
+
+    def across(self, at: mi.Float, active: mi.Bool) -> mi.Float:
+        """g of the slope across the view, at a place among the cells."""
+        raise NotImplementedError
+
+    def heavy(self, at: mi.Float, active: mi.Bool) -> tuple[mi.Float, mi.Float]:
+        """The share of normals that the closed form draws, at a place among rows, and the rest."""
+        raise NotImplementedError
+
+    def cubic(
+        self, first: mi.UInt32, between: mi.Float, step: int, active: mi.Bool
+    ) -> mi.Vector4f:
+        """The cubic of the slope in the plane, between that of an index and that a step further."""
+        raise NotImplementedError
+
+
+class Shape(Lobe):
+    """The lobe of a gamma that is a constant: formulas of GGX (2) and Beckmann (inf) replace
+    tables where they can.
+    """
+
+    def __init__(self, shape: Any) -> None:
+        """``shape``: what ``microfacet.Tables().shape(gamma)`` returns."""
+        members, tables = shape.members, shape.tables
+        self.gamma = shape.gamma
+        self.members = members
+        self.is_ggx = members["is_ggx"] > 0
+        self.has_heavy = members["heavy_per_row"] > 0
+        self._s, self._power = members["d_s"], members["d_power"]
+        if not self.is_ggx:
+            # The first cubic across is that of numbers within 1e-6 of 0 and 1.
+            self._masking = Line(tables["masking"], 5e-9)
+            self._across = Line(tables["across"], 1e-6)
+            self._slopes = Packets(slope_packets(tables["slopes"]))
+            self._heavy = Line(tables["heavy"], 1e-7) if self.has_heavy else None
+
+    def inverse_area(self, w: Stretched, active: mi.Bool = True) -> mi.Float:
+        if self.is_ggx:
+            return 2 / (w.z + dr.sqrt(dr.maximum(w.square, _UPRIGHT) + w.z * w.z))
+        return super().inverse_area(w, active)
+
+    def root_of_d(self, z2: mi.Float, slope2: mi.Float, above: mi.Bool) -> mi.Float:
+        part = self._s * slope2
+        b = dr.maximum(z2 + part, SMALLEST)
+        if self.is_ggx:
+            return 1 / b
+        if math.isinf(self.gamma):
+            z2 = dr.select(above, dr.maximum(z2, SMALLEST), 1.0)
+            return dr.exp(-0.5 * slope2 / z2) / z2
+        return dr.exp2(self._power * self._growth(z2, part)) / b
+
+    def _growth(self, z2: mi.Float, part: mi.Float) -> mi.Float:
+        """log2(1 + part/z^2)."""
+        ratio = dr.minimum(part / dr.maximum(z2, SMALLEST), LARGEST)
+        # Up to a power of 4 what 1 + x rounds away is 1e-6 of D.
+        if abs(self._power) <= 4:
+            return dr.log2(1 + ratio)
+        return log_growth(ratio) * (1 / math.log(2))
+
+    def masking(self, at: mi.Float, active: mi.Bool) -> mi.Float:
+        return self._masking(at, active)
+
+    def across(self, at: mi.Float, active: mi.Bool) -> mi.Float:
+        return self._across(at, active)
+
+    def heavy(self, at: mi.Float, active: mi.Bool) -> tuple[mi.Float, mi.Float]:
+        assert self._heavy is not None
+        share = self._heavy(at, active)
+        return share, 1 - share
+
+    def cubic(
+        self, first: mi.UInt32, between: mi.Float, step: int, active: mi.Bool
+    ) -> mi.Vector4f:
+        a, b = self._slopes(first, active), self._slopes(first + step, active)
+        return a + between * (b - a)
 
 
 def g2(g1_v: mi.Float, g1_l: mi.Float, correlated: bool) -> mi.Float:
