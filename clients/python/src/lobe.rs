@@ -288,6 +288,13 @@ fn parts(moments: Moments) -> [f32; 3] {
 /// 3.5368
 /// >>> round(float(lobe.albedo(cos_theta=0.8)), 4)
 /// 0.9204
+///
+/// One for each hit of textures, rougher and rougher, seen from one side:
+///
+/// >>> import numpy as np
+/// >>> many = microfacet.StudentT(sigma=np.linspace(0.1, 0.5, 5), gamma=2.5)
+/// >>> many.g1([0.8, 0.0, 0.6]).astype(float).round(3).tolist()
+/// [1.0, 0.997, 0.989, 0.977, 0.96]
 #[pyclass(name = "StudentT", module = "microfacet", extends = PyLobe, frozen)]
 pub(crate) struct PyStudentT {
     surface: Arc<Surface>,
