@@ -8,7 +8,7 @@ use microfacet_sampler::{
     AnyBsdf, Bsdf, Conductor, ConductorFresnel, Dielectric, Event, Lobe, Metal, Plastic,
 };
 
-use crate::arrays::{Any, Cost, Input, each2, each3};
+use crate::arrays::{Any, Cost, Input, each, each2, each3};
 use crate::lobe::PyLobe;
 use crate::words::{self, refused, unbound};
 
@@ -215,7 +215,7 @@ impl PyDielectric {
 ///
 /// A compensation needs a set of tables that was baked for the coat; see Conductor.
 #[pyclass(name = "Plastic", module = "microfacet", extends = PyBsdf, frozen)]
-pub(crate) struct PyPlastic {}
+pub(crate) struct PyPlastic(Plastic<Lobe>);
 
 #[pymethods]
 impl PyPlastic {
@@ -235,6 +235,20 @@ impl PyPlastic {
         let settings = words::settings(masking, compensation, tables, stand_in)?;
         let base = words::reflectance("base", base)?;
         let plastic = Plastic::new(Lobe::clone(lobe), eta, base, settings).map_err(unbound)?;
-        Ok(PyClassInitializer::from(PyBsdf::new(plastic, about)).add_subclass(Self {}))
+        let bsdf = PyBsdf::new(plastic.clone(), about);
+        Ok(PyClassInitializer::from(bsdf).add_subclass(Self(plastic)))
+    }
+
+    /// The shares of the light of views v that one bounce off the coat reflects and transmits,
+    /// shape (..., 2), each in [0, 1]; what is missing to 1 is lost to further bounces.
+    fn coat_shares<'py>(&self, v: &Any<'py>) -> PyResult<Any<'py>> {
+        let v = Input::new("v", v)?;
+        each(&v, Cost::Lookup, |v: [f32; 3]| self.0.coat_shares(v))
+    }
+
+    /// The share of diffuse light from inside that the coat does not reflect, in (0, 1].
+    #[getter]
+    fn leaving(&self) -> f32 {
+        self.0.leaving()
     }
 }

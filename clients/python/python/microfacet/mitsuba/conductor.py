@@ -12,10 +12,9 @@ import mitsuba as mi
 
 from . import parameters
 from .albedo import Albedos
-from .arithmetic import LARGEST_DENSITY
 from .compensation import Account, Losses, account, kulla_conty, turquin
 from .fresnel import Exact, Schlick, White
-from .shape import g2_over_g1
+from .reflection import white
 from .spectra import blocked, spectrum
 from .surface import round_of, surface_class
 
@@ -124,13 +123,8 @@ def conductor_class() -> type:
             active: mi.Bool,
         ) -> tuple[mi.UnpolarizedSpectrum, mi.Float]:
             """Light off facets of normal m: f cos/pdf, and its density."""
-            shape = self._shape
-            view = shape.stretch(sigma, si.wi)
-            inverse_area = shape.inverse_area(view, active)
-            g1_v = dr.minimum(view.z * inverse_area, 1)
-            g1_l = shape.g1(sigma, l, active)
-            pdf = dr.minimum(0.25 * shape.d(sigma, m) * inverse_area, LARGEST_DENSITY)
-            weight = self._fresnel.at(si, facing, active) * g2_over_g1(g1_v, g1_l, self._correlated)
+            weight, pdf = white(self._shape, sigma, si.wi, l, m, self._correlated, active)
+            weight = weight * self._fresnel.at(si, facing, active)
             if self._compensation == "turquin":
                 assert self._losses is not None
                 f0 = self._fresnel.at(si, mi.Float(1), active)

@@ -70,11 +70,6 @@ def dielectric_class() -> type:
             self._index = parameters.index(props)
             self._eta = mi.Float(self._index)
             self._transmittance = parameters.reflectance(props, "specular_transmittance")
-            if self._compensation != "none" and self._round_sigma() is None:
-                raise ValueError(
-                    "compensation of a dielectric has albedos of one roughness, and sigma is a"
-                    " texture: make sigma a number, or set compensation to none"
-                )
             sides = self._flags(mi.BSDFFlags.FrontSide | mi.BSDFFlags.BackSide)
             self._has_pole = self._gamma < 2
             refraction = transmission | only_sampled if self._has_pole else transmission
@@ -101,7 +96,7 @@ def dielectric_class() -> type:
                 if dr.is_jit_v(mi.Float):
                     dr.make_opaque(self._eta)
                 return
-            sigma = self._round_sigma()
+            sigma = self._sigma_of_albedos()
             albedo = self._tables.dielectric_albedo(sigma, self._gamma, self._index, self._masking)
             self._energy = Energy(albedo, self._index)
 

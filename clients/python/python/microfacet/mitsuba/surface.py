@@ -1,4 +1,4 @@
-"""What both plugins share: the lobe and its properties, and values and densities by one function."""
+"""What the plugins share: the lobe and its properties, and values and densities by one function."""
 
 from __future__ import annotations
 
@@ -106,6 +106,16 @@ def surface_class() -> type:
         def _round_sigma(self) -> float | None:
             """The roughness of the round lobe that albedos are of, where it is the same everywhere."""
             return parameters.round_sigma(self._sigma_x, self._sigma_y, self._stand_in)
+
+        def _sigma_of_albedos(self) -> float:
+            """The same for albedos of one roughness; ``ValueError`` where it is a texture."""
+            sigma = self._round_sigma()
+            if sigma is None:
+                raise ValueError(
+                    "compensation of a dielectric has albedos of one roughness, and sigma is a"
+                    " texture: make sigma a number, or set compensation to none"
+                )
+            return sigma
 
     return Surface
 
