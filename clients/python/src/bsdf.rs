@@ -292,7 +292,7 @@ impl PyDielectric {
 /// >>> bool(r > g == b)
 /// True
 #[pyclass(name = "Plastic", module = "microfacet", extends = PyBsdf, frozen)]
-pub(crate) struct PyPlastic {}
+pub(crate) struct PyPlastic(Option<Plastic<Lobe>>);
 
 #[pymethods]
 impl PyPlastic {
@@ -316,19 +316,41 @@ impl PyPlastic {
         let about = format!("Plastic({}, eta={eta})", lobe.repr()?);
         let base = words::reflectance("base", base)?;
         let PyLobe { kind, set, .. } = lobe.get();
-        let bsdf = match kind {
+        let (bsdf, one) = match kind {
             Kind::Family(lobes) => {
                 let masking = words::masking(masking)?;
                 let compensation = words::compensation(compensation)?;
-                Material::plastic(lobes, set, eta, base, masking, compensation, stand_in)?
+                let all = Material::plastic(lobes, set, eta, base, masking, compensation, stand_in);
+                (all?, None)
             }
             _ => {
                 let settings = words::settings(masking, compensation, set, stand_in)?;
                 let lobe = Lobe::clone(lobe.get().one()?);
-                Material::of(Plastic::new(lobe, eta, base, settings).map_err(unbound)?)
+                let plastic = Plastic::new(lobe, eta, base, settings).map_err(unbound)?;
+                (Material::of(plastic.clone()), Some(plastic))
             }
         };
-        Ok(PyClassInitializer::from(PyBsdf { bsdf, about }).add_subclass(Self {}))
+        Ok(PyClassInitializer::from(PyBsdf { bsdf, about }).add_subclass(Self(one)))
+    }
+
+    /// The shares of the light of views v that one bounce off the coat reflects and transmits,
+    /// shape (..., 2), each in [0, 1]; what is missing to 1 is lost to further bounces.
+    fn coat_shares<'py>(&self, py: Python<'py>, v: &Any<'py>) -> PyResult<Any<'py>> {
+        let v = Input::directions("v", v)?;
+        let one = One(self.one()?);
+        each(py, (one, &v), Cost::Lookup, |(plastic, v): (_, [f32; 3])| plastic.coat_shares(v))
+    }
+
+    /// The share of diffuse light from inside that the coat does not reflect, in (0, 1].
+    #[getter]
+    fn leaving(&self) -> PyResult<f32> {
+        self.one().map(Plastic::leaving)
+    }
+}
+
+impl PyPlastic {
+    fn one(&self) -> PyResult<&Plastic<Lobe>> {
+        self.0.as_ref().ok_or_else(|| refused("this is for one coat, not for lobes of arrays"))
     }
 }
 

@@ -211,6 +211,9 @@ class Plastic(Bsdf):
         compensation: _Compensation = "none",
         stand_in: bool = False,
     ) -> Plastic: ...
+    @property
+    def leaving(self) -> float: ...
+    def coat_shares(self, v: ArrayLike) -> _Array: ...
 
 @final
 class Need:

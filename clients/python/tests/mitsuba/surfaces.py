@@ -24,6 +24,10 @@ def dielectric(**properties: Any) -> mi.BSDF:
     return mi.load_dict({"type": "student_t_dielectric", **properties})
 
 
+def plastic(**properties: Any) -> mi.BSDF:
+    return mi.load_dict({"type": "student_t_plastic", **properties})
+
+
 def directions(count: int, seed: int, lowest: float = 0.0) -> np.ndarray:
     """Directions (count, 3) of random azimuth, their cosines evenly in [lowest, 1]."""
     rng = np.random.default_rng(seed)

@@ -56,6 +56,22 @@ DIELECTRIC: list[tuple[dict[str, Any], list[str]]] = [
 ]
 
 
+PLASTIC: list[tuple[dict[str, Any], list[str]]] = [
+    ({"int_ior": 1.5, "ext_ior": 1.5}, ["1.5/1.5 = 1", "[0.001, 1000]"]),
+    ({"diffuse_reflectance": 1.5}, ["diffuse_reflectance = 1.5", "[0, 1]"]),
+    ({"nonlinear": True}, ["'nonlinear'", "there are"]),
+    ({"sigma": 20.0}, ["sigma = 20", "[0.0001, 10]"]),
+    ({"sigma_u": 0.1, "sigma_v": 0.2}, ["stand_in", "sigma_u and sigma_v the same number"]),
+    ({"gamma": {"type": "checkerboard"}}, ["gamma is a texture", "make gamma a number"]),
+    ({"compensation": "turquin", "int_ior": 1.5, "ext_ior": 1.0}, ["dielectric = 1.5"]),
+    ({"compensation": "kulla_conty", "int_ior": 1.5, "ext_ior": 1.0}, ["dielectric = 1.5"]),
+    (
+        {"compensation": "turquin", "sigma": {"type": "checkerboard"}},
+        ["sigma is a texture", "none"],
+    ),
+]
+
+
 @pytest.mark.parametrize(("properties", "words"), CONDUCTOR)
 def test_conductors(properties: dict[str, Any], words: list[str]) -> None:
     refused("student_t_conductor", properties, words)
@@ -66,12 +82,17 @@ def test_dielectrics(properties: dict[str, Any], words: list[str]) -> None:
     refused("student_t_dielectric", properties, words)
 
 
+@pytest.mark.parametrize(("properties", "words"), PLASTIC)
+def test_plastics(properties: dict[str, Any], words: list[str]) -> None:
+    refused("student_t_plastic", properties, words)
+
+
 def refused(plugin: str, properties: dict[str, Any], words: list[str]) -> None:
     """Mitsuba hands errors of plugins on as ``RuntimeError``."""
     with pytest.raises(RuntimeError) as caught:
         mi.load_dict({"type": plugin, **properties})
-    message = str(caught.value).strip().splitlines()[-1]
-    assert message.startswith("ValueError") or "tables" in properties
+    message = str(caught.value)
+    assert "\nValueError: " in message or "tables" in properties, message
     for word in words:
         assert word in message
 

@@ -141,6 +141,11 @@ def test_colours(compensation: str) -> None:
     agrees(surfaces.conductor(eta=0.5, k=2.0, **form), "k.value", 2.0, 1e-2, False)
 
 
+def test_the_base_of_plastics() -> None:
+    bsdf = surfaces.plastic(sigma=0.3, gamma=1.8, diffuse_reflectance=0.5)
+    agrees(bsdf, "diffuse_reflectance.value", 0.5, 5e-3, False)
+
+
 def test_one_roughness_of_an_anisotropic_surface() -> None:
     bsdf = surfaces.conductor(sigma_u=0.2, sigma_v=0.5, gamma=2.5)
     agrees(bsdf, "sigma_u.value", 0.2, 1e-3, False)

@@ -80,6 +80,20 @@ def test_beckmann_within_the_error_of_mitsuba_s_masking(roughness: Any) -> None:
     )
 
 
+@pytest.mark.parametrize("alpha", (0.1, 0.3, 0.5))
+def test_plastic_of_ggx_within_the_error_of_mitsuba_s_tables(alpha: float) -> None:
+    """It has what the coat transmits at 64 cosines, linear between."""
+    form = {"int_ior": 1.5, "ext_ior": 1.0, "diffuse_reflectance": 0.7}
+    ours = surfaces.plastic(gamma=2, sigma=alpha, masking="uncorrelated", **form)
+    native = mi.load_dict(
+        {"type": "roughplastic", "distribution": "ggx", "alpha": alpha, "nonlinear": True, **form}
+    )
+    views, lights = directions(20_000, 1, 0.05), directions(20_000, 2, 0.05)
+    si, l = hit(views), vectors(lights)
+    got, want = numbers(ours.eval(CONTEXT, si, l)), numbers(native.eval(CONTEXT, si, l))
+    assert relative(got, want, 1e-2) < 1e-2
+
+
 @pytest.mark.parametrize(
     ("gamma", "kind"), [(2.0, mi.MicrofacetType.GGX), (math.inf, mi.MicrofacetType.Beckmann)]
 )

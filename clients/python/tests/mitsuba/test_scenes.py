@@ -115,25 +115,27 @@ SPHERES = """
             {"type": "student_t_conductor", "sigma": 0.5, "gamma": "inf", "f0": 0.8,
              "compensation": "kulla_conty"},
             {"type": "student_t_dielectric", "sigma": 0.2, "gamma": 3.0},
+            {"type": "student_t_plastic", "sigma": 0.2, "gamma": 1.8,
+             "diffuse_reflectance": {"type": "rgb", "value": [0.8, 0.4, 0.1]}},
         ]
         scene = {
             "type": "scene",
             "integrator": {"type": "path", "max_depth": 6},
             "light": {"type": "constant"},
             "sensor": {
-                "type": "perspective", "fov": 40,
+                "type": "perspective", "fov": 52,
                 "to_world": mi.ScalarTransform4f().look_at([0, 0, 10], [0, 0, 0], [0, 1, 0]),
-                "film": {"type": "hdrfilm", "width": 24, "height": 8},
+                "film": {"type": "hdrfilm", "width": 32, "height": 8},
             },
         }
         for i, surface in enumerate(surfaces):
-            center = [2.2 * (i - 1), 0, 0]
+            center = [2.2 * (i - 1.5), 0, 0]
             scene[f"sphere{i}"] = {"type": "sphere", "center": center, "bsdf": surface}
         return np.array(mi.render(mi.load_dict(scene), spp=int(more.get("spp", 64))))
 """
 
 
-def test_three_surfaces_in_a_scene() -> None:
+def test_four_surfaces_in_a_scene() -> None:
     """Also after another variant was set, and the plugins were added twice."""
     names: dict[str, Any] = {}
     exec(textwrap.dedent(SPHERES), names)
@@ -195,7 +197,7 @@ def test_variants_after_each_other() -> None:
 
 
 def test_channels_keep_their_colours_in_polarised_variants() -> None:
-    """Of metals, and of light of further bounces, by four wavelengths."""
+    """Of metals, of light of further bounces, and of plastics, by four wavelengths."""
     program = """
     import sys
     import microfacet.mitsuba
@@ -203,7 +205,8 @@ def test_channels_keep_their_colours_in_polarised_variants() -> None:
     import mitsuba as mi
     import numpy as np
     colour = {"type": "rgb", "value": [0.9, 0.5, 0.1]}
-    for more in ({"material": "Cu"}, {"f0": colour, "compensation": "kulla_conty"}):
+    for more in ({"material": "Cu"}, {"f0": colour, "compensation": "kulla_conty"},
+                 {"type": "student_t_plastic", "diffuse_reflectance": colour}):
         scene = mi.load_dict({
             "type": "scene", "integrator": {"type": "direct"}, "light": {"type": "constant"},
             "sensor": {

@@ -232,6 +232,40 @@ impl<L: Reflecting, const N: usize, A: InterfaceAlbedo> Plastic<L, N, A> {
         self.masking
     }
 
+    /// The shares of the light of a view that one bounce off the coat reflects and transmits, each
+    /// in [0, 1]; what is missing to 1 is lost to further bounces.
+    ///
+    /// `v` is of unit length in the tangent frame; a view from below, or with NaN, has the shares
+    /// of one on the horizon. They err as [`Plastic`] says, or as the tables of a compensation do.
+    ///
+    /// ```
+    /// # #[cfg(feature = "embedded")] {
+    /// use microfacet_sampler::{BsdfSettings, Plastic, Tables};
+    ///
+    /// let coat = Tables::embedded().student_t(0.1, 2.0)?;
+    /// let plastic = Plastic::new(coat, 1.5, [0.5; 3], BsdfSettings::new())?;
+    /// let [reflected, transmitted] = plastic.coat_shares([0.0, 0.0, 1.0]);
+    /// assert!((reflected - 0.04).abs() < 1e-3 && (transmitted - 0.96).abs() < 5e-3);
+    /// # }
+    /// # Ok::<(), microfacet_sampler::BindError>(())
+    /// ```
+    #[must_use]
+    pub fn coat_shares(&self, v: impl Into<[f32; 3]>) -> [f32; 2] {
+        let v = vec3(v);
+        let shares = self.energy.shares(OUTSIDE, Vec3::new(v.x, v.y, unit(v.z)));
+        [shares.reflection, shares.transmission]
+    }
+
+    /// The share 1 − R of diffuse light from inside that the coat does not reflect, in (0, 1]: it
+    /// leaves, or is lost to further bounces where there is no compensation.
+    ///
+    /// With its digits where a dense coat lets out little, and within the errors of
+    /// [`coat_shares`](Self::coat_shares).
+    #[must_use]
+    pub fn leaving(&self) -> f32 {
+        self.energy.left(1.0) / (self.eta * self.eta)
+    }
+
     /// The probability of facets: their share of the light that returns.
     #[inline(always)]
     fn facets_share(&self, shares: &Shares) -> f32 {

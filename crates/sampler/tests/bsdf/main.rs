@@ -312,6 +312,12 @@ fn smooth_white_plastic_returns_all_light() {
                 })
                 .sum();
             assert!((coat + base - 1.0).abs() < 2e-4, "{eta} {cos}: {coat} + {base}");
+            let [reflected, entering] = white.coat_shares(v).map(f64::from);
+            assert!((reflected - coat).abs() < 1e-5 && (entering + coat - 1.0).abs() < 1e-5);
+            let l = Vec3::new(0.8, 0.0, 0.6);
+            let [both, leaving] = [white.coat_shares(l)[1], white.leaving()].map(f64::from);
+            let f = entering * both / (std::f64::consts::PI * eta * eta * leaving);
+            assert!((f64::from(white.eval(v, l, RADIANCE)[0]) / f - 1.0).abs() < 1e-5);
         }
     }
 }

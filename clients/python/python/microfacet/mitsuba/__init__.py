@@ -1,8 +1,9 @@
 """Plugins of Mitsuba 3 for surfaces whose facets follow the Student-t distribution.
 
-``student_t_conductor`` is a rough metal and ``student_t_dielectric`` rough glass, with gamma = 2
-GGX and gamma = inf Beckmann. Both read the tables of :class:`microfacet.Tables`. Their properties
-are listed in ``docs/mitsuba.md``::
+``student_t_conductor`` is a rough metal, ``student_t_dielectric`` rough glass and
+``student_t_plastic`` rough glass over a diffuse base, with gamma = 2 GGX and gamma = inf Beckmann.
+They read the tables of :class:`microfacet.Tables`. Their properties are listed in
+``docs/mitsuba.md``::
 
     import microfacet.mitsuba
 
@@ -21,7 +22,7 @@ __all__ = ["register", "set_variant"]
 
 
 def register() -> None:
-    """Adds ``student_t_conductor`` and ``student_t_dielectric`` to the current variant.
+    """Adds the plugins to the current variant.
 
     To be called after ``mitsuba.set_variant``, for every variant that is used; twice is as once.
     """
@@ -31,9 +32,11 @@ def register() -> None:
         raise RuntimeError("no variant is set: call mitsuba.set_variant first, as for llvm_ad_rgb")
     from .conductor import conductor_class
     from .dielectric import dielectric_class
+    from .plastic import plastic_class
 
     mi.register_bsdf("student_t_conductor", conductor_class())
     mi.register_bsdf("student_t_dielectric", dielectric_class())
+    mi.register_bsdf("student_t_plastic", plastic_class())
 
 
 def set_variant(name: str) -> None:

@@ -43,8 +43,10 @@ class Broad:
     def __init__(self, lost: np.ndarray) -> None:
         """``lost``: what is lost at :func:`cosines`, (rows, 256) numbers >= 0."""
         rows = [_factors(row) for row in np.asarray(lost, np.float64)]
-        self._factors = Numbers(np.stack([factors for factors, _ in rows]))
-        self._shares = Numbers(np.stack([shares for _, shares in rows]))
+        self._factors = Numbers(np.stack([factors for factors, _, _ in rows]))
+        self._shares = Numbers(np.stack([shares for _, shares, _ in rows]))
+        #: The cosine-weighted average of what is lost, of each row.
+        self.averages = [average for _, _, average in rows]
         self._squares = Numbers(_SQUARES)
 
     def sample(self, row: mi.UInt32, u: mi.Point2f, active: mi.Bool = True) -> mi.Vector3f:
@@ -78,8 +80,10 @@ class Broad:
         return (a + w * (b - a)) * cos_theta * (1 / math.pi)
 
 
-def _factors(lost: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The factors at the ends of the bands, and the share of all bands below each end."""
+def _factors(lost: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    """The factors at the ends of the bands, the share of all bands below each end, and the average
+    of what is lost.
+    """
     w = (np.arange(_PLACES) + 0.5) / _PLACES
     places = lost.reshape(BANDS, _PLACES)
     total, weight = np.zeros(BANDS + 1), np.zeros(BANDS + 1)
@@ -91,4 +95,4 @@ def _factors(lost: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     whole = (0.5 * (means[:-1] + means[1:]) * widths).sum()
     factors = _PLAIN + (1 - _PLAIN) * means / whole if whole > 0 else np.ones(BANDS + 1)
     shares = np.concatenate([[0], np.cumsum(0.5 * (factors[:-1] + factors[1:]) * widths)])
-    return factors, shares
+    return factors, shares, float(whole)

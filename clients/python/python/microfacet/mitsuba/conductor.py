@@ -11,10 +11,10 @@ import drjit as dr
 import mitsuba as mi
 
 from . import parameters
-from .arithmetic import LARGEST_DENSITY
 from .compensation import Account, Losses, account, kulla_conty, turquin
 from .fresnel import Exact, Schlick, White
-from .shape import Lobe, g2_over_g1
+from .reflection import white
+from .shape import Lobe
 from .spectra import blocked, spectrum
 from .surface import round_of, surface_class
 
@@ -125,12 +125,8 @@ def conductor_class() -> type:
             active: mi.Bool,
         ) -> tuple[mi.UnpolarizedSpectrum, mi.Float]:
             """Light off facets of normal m: f cos/pdf, and its density."""
-            view = lobe.stretch(sigma, si.wi)
-            inverse_area = lobe.inverse_area(view, active)
-            g1_v = dr.minimum(view.z * inverse_area, 1)
-            g1_l = lobe.g1(sigma, l, active)
-            pdf = dr.minimum(0.25 * lobe.d(sigma, m) * inverse_area, LARGEST_DENSITY)
-            weight = self._fresnel.at(si, facing, active) * g2_over_g1(g1_v, g1_l, self._correlated)
+            weight, pdf = white(lobe, sigma, si.wi, l, m, self._correlated, active)
+            weight = weight * self._fresnel.at(si, facing, active)
             if self._compensation == "turquin":
                 assert self._losses is not None
                 f0 = self._fresnel.at(si, mi.Float(1), active)

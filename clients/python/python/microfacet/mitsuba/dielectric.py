@@ -74,12 +74,7 @@ def dielectric_class() -> type:
             self._eta = mi.Float(self._index)
             self._transmittance = parameters.reflectance(props, "specular_transmittance")
             if self._compensation != "none":
-                for name, one in (("sigma", self._round_sigma()), ("gamma", self._bound_gamma)):
-                    if one is None:
-                        raise ValueError(
-                            f"compensation of a dielectric has albedos of one {name}, and {name} is"
-                            f" a texture: make {name} a number, or set compensation to none"
-                        )
+                self._sigma_of_albedos()
             self._energy: Energy | None = None
             self.parameters_changed()
 
@@ -108,7 +103,7 @@ def dielectric_class() -> type:
                 if dr.is_jit_v(mi.Float):
                     dr.make_opaque(self._eta)
                 return
-            sigma = self._round_sigma()
+            sigma = self._sigma_of_albedos()
             albedo = self._tables.dielectric_albedo(sigma, gamma, self._index, self._masking)
             self._energy = Energy(albedo, self._index)
 

@@ -19,6 +19,9 @@ from .curve import Curve
 
 SIDES = ("outside", "inside")
 
+#: The number of the side above the surface; that below is 1.
+OUTSIDE = 0
+
 
 class Energy:
     """The losses of one interface, for one roughness; derivatives do not pass through them."""

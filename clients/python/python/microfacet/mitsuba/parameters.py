@@ -161,11 +161,16 @@ def check_albedos(props: mi.Properties, stand_in: bool) -> None:
         if name in props:
             why = "compensation has albedos up to there; lower it, or set compensation to none"
             number_in(props, name, SIGMA[0], SIGMA_OF_ALBEDOS, why)
+    check_round(props, stand_in, ANISOTROPIC)
+
+
+def check_round(props: mi.Properties, stand_in: bool, words: str) -> None:
+    """Raises ``ValueError`` with these words for an anisotropic surface without a stand-in."""
     if "sigma_u" not in props or stand_in:
         return
     x, y = props["sigma_u"], props["sigma_v"]
     if not (isinstance(x, (int, float)) and x == y):
-        raise ValueError(ANISOTROPIC)
+        raise ValueError(words)
 
 
 def constant(texture: mi.Texture) -> mi.Float | None:
@@ -175,17 +180,22 @@ def constant(texture: mi.Texture) -> mi.Float | None:
     return texture.eval_1(dr.zeros(mi.SurfaceInteraction3f), True)
 
 
-def round_sigma(sigma_u: mi.Texture, sigma_v: mi.Texture, stand_in: bool) -> float | None:
-    """sqrt(sigma_u sigma_v) where neither varies, for compensation; ``ValueError`` if they differ
-    and the round lobe may not stand in.
+def round_sigma(
+    sigma_u: mi.Texture,
+    sigma_v: mi.Texture,
+    stand_in: bool,
+    highest: float = SIGMA_OF_ALBEDOS,
+    words: str = ANISOTROPIC,
+) -> float | None:
+    """sqrt(sigma_u sigma_v) where neither varies, up to the highest; ``ValueError`` with the words
+    if they differ and the round lobe may not stand in.
     """
     x, y = constant(sigma_u), constant(sigma_v)
     if x is None or y is None:
         return None
-    low, high = SIGMA[0], SIGMA_OF_ALBEDOS
-    x, y = (min(max(value(one), low), high) for one in (x, y))
+    x, y = (min(max(value(one), SIGMA[0]), highest) for one in (x, y))
     if x != y and not stand_in:
-        raise ValueError(ANISOTROPIC)
+        raise ValueError(words)
     return math.sqrt(x * y)
 
 

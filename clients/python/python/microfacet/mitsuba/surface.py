@@ -1,4 +1,4 @@
-"""What both plugins share: the lobe and its properties, and values and densities by one function."""
+"""What the plugins share: the lobe and its properties, and values and densities by one function."""
 
 from __future__ import annotations
 
@@ -135,6 +135,21 @@ def surface_class() -> type:
         def _round_sigma(self) -> float | None:
             """The roughness of the round lobe that albedos are of, where it is the same everywhere."""
             return parameters.round_sigma(self._sigma_u, self._sigma_v, self._stand_in)
+
+        def _sigma_of_albedos(self) -> float:
+            """The same for albedos of one roughness and gamma; ``ValueError`` where either is a
+            texture.
+            """
+            sigma = self._round_sigma()
+            gamma = parameters.constant_gamma(self._gamma)
+            for name, one in (("sigma", sigma), ("gamma", gamma)):
+                if one is None:
+                    raise ValueError(
+                        f"compensation of a dielectric has albedos of one {name}, and {name} is a"
+                        f" texture: make {name} a number, or set compensation to none"
+                    )
+            assert sigma is not None
+            return sigma
 
     return Surface
 
