@@ -37,9 +37,24 @@ def test_examples_of_pages(page, tmp_path, monkeypatch):
     blocks = [block for block in blocks if "mitsuba" not in block]
     assert len(blocks) >= {"README.md": 3, "DESCRIPTION.md": 1}[page]
     monkeypatch.chdir(tmp_path)
+    names: dict[str, object] = {"__name__": "__main__"}
+    for block in blocks:
+        exec(block, names)
+
+
+@pytest.mark.parametrize(("section", "module"), [("PyTorch", "torch"), ("JAX", "jax")])
+def test_examples_of_frameworks(section, module):
+    pytest.importorskip(module)
+    text = (Path(__file__).parents[3] / "docs" / "frameworks.md").read_text()
+    (part,) = re.findall(rf"^## {section}\n(.*?)^## ", text, re.S | re.M)
+    blocks = re.findall(r"```python\n(.*?)```", part, re.S)
+    assert blocks
     names: dict[str, object] = {}
     for block in blocks:
         exec(block, names)
+    if section == "PyTorch":
+        found = [names[name].item() for name in ("sigma", "gamma", "rough")]
+        assert found == [pytest.approx(0.3, 1e-6), pytest.approx(2.5, 1e-6), pytest.approx(0.3, 0.01)]
 
 
 def test_everything_is_documented():

@@ -44,8 +44,8 @@ def test_the_description_has_no_links_into_the_repository():
 
 def test_the_sdist_has_what_it_is_built_from_and_nothing_built(tmp_path):
     maturin = shutil.which("maturin", path=Path(sys.executable).parent)
-    if maturin is None:
-        pytest.skip("maturin is not installed")
+    if maturin is None or shutil.which("cargo") is None:
+        pytest.skip("maturin or Rust is not installed")
     subprocess.run([maturin, "sdist", "--out", tmp_path], cwd=HERE, check=True)
     (archive,) = tmp_path.iterdir()
     with tarfile.open(archive) as tar:
@@ -59,3 +59,8 @@ def test_the_sdist_has_what_it_is_built_from_and_nothing_built(tmp_path):
     sources = {*python.rglob("*.py"), *python.rglob("*.pyi"), *python.rglob("py.typed")}
     assert {path.relative_to(HERE).as_posix() for path in sources} <= names
     assert "clients/python/Cargo.lock" in names and "clients/python/src/lib.rs" in names
+    # Its manifests go together, without those that it leaves out.
+    shutil.unpack_archive(archive, tmp_path / "unpacked")
+    (manifest,) = tmp_path.glob("unpacked/*/clients/python/Cargo.toml")
+    command = ["cargo", "metadata", "--locked", "--quiet", "--format-version", "1"]
+    subprocess.run([*command, "--manifest-path", manifest], check=True, stdout=subprocess.DEVNULL)
