@@ -231,3 +231,18 @@ def test_the_tables_of_a_shape_are_those_of_the_exports():
     w = at - cell
     g1 = z * (a + w * (b + w * (c + w * d))) * cells / (z + across)
     assert abs(g1 - microfacet.StudentT(sigma, 1.7).g1([0.8, 0, 0.6])) < 1e-6
+
+
+def test_shares_of_the_coat_of_a_plastic():
+    mirror = microfacet.Plastic(microfacet.StudentT(1e-6, 2), 1.5, 0.5)
+    shares = mirror.coat_shares([[0, 0, 1], [0.6, 0, 0.8]])
+    assert shares.shape == (2, 2) and np.allclose(shares.sum(axis=1), 1)
+    assert np.allclose(shares[0], [0.04, 0.96], atol=1e-6)
+    # The share of diffuse light from inside that a smooth coat of 1.5 lets out.
+    assert abs(mirror.leaving - 0.404) < 1e-3
+    v, l = directions(100, 5), directions(100, 6)
+    base = mirror.coat_shares(v)[:, 1] * mirror.coat_shares(l)[:, 1] * 0.5
+    base /= np.pi * 1.5**2 * (0.5 + 0.5 * mirror.leaving)
+    assert np.allclose(mirror.eval(v, l)[:, 0], base, rtol=1e-5)
+    rough = microfacet.Plastic(microfacet.StudentT(0.5, 2), 1.5, 0.5)
+    assert rough.coat_shares([0, 0, 1]).sum() < 0.98 and rough.leaving > mirror.leaving

@@ -111,6 +111,19 @@ def test_a_white_base_returns_no_more_than_all_light(gamma: float) -> None:
         no_more_than_all(bsdf, 0.0)
 
 
+def test_what_single_scattering_loses() -> None:
+    for gamma, share in ((2.0, 0.69), (1.6, 0.37)):
+        bsdf = surfaces.plastic(sigma=0.3, gamma=gamma, diffuse_reflectance=1.0)
+        mean, error = returned(bsdf, 0.7)
+        assert abs(mean - share) < 5e-3 + 4 * error, (gamma, mean, error)
+
+
+def test_the_round_lobe_stands_in_with_an_error() -> None:
+    form = {"gamma": "inf", "stand_in": True, "diffuse_reflectance": 1.0}
+    bsdf = surfaces.plastic(sigma_x=0.05, sigma_y=0.5, **form)
+    assert 1.1 < returned(bsdf, 0.05)[0] < 1.12
+
+
 @pytest.mark.parametrize("compensation", ("turquin", "kulla_conty"))
 def test_a_white_base_returns_all_light(coats: Path, compensation: str) -> None:
     for sigma in (0.1, 0.6):

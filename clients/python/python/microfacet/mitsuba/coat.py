@@ -122,7 +122,6 @@ class Coat:
 
     def shares(self, place: Place, cos_theta: mi.Float, active: mi.Bool) -> Shares:
         """The shares of a direction above by its cosine."""
-
         ends = [*self._joints, mi.Float(1)]
         part, low, high = mi.UInt32(0), mi.Float(0), ends[0]
         for i, joint in enumerate(self._joints):
