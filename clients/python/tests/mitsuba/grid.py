@@ -116,7 +116,7 @@ def main(gammas: Sequence[float]) -> None:
                         # And with more points, which take long.
                         passed[i:-1] += 1
                         break
-                off = max(off, abs(test.pdf_sum[0] - by_facets.pdf_sum[0]))
+                off = max(off, abs(test.pdf_sum[0] - test.histogram_sum[0]))
             row = (f"{gamma:5g} {sigma:5g} ", *passed, f"{most:.4f}", f"{off:.3f}")
             print(*row, sep="  ", flush=True)
 
