@@ -89,6 +89,14 @@ def test_albedos(masking: str) -> None:
             assert abs(numbers(albedos.lost_average(*at))[0] - average) < 3e-5
 
 
+def test_size(family: Family) -> None:
+    """Bytes of the tables of all gammas, and of those of albedos."""
+    lines = (family.masking, family.across, family.heavy)
+    packets = [family.slopes, family.steps, *(of._both for of in lines)]
+    assert sum(4 * len(of._rows) for of in packets) < 16.5e6
+    assert 4 * len(Albedos(microfacet.Tables(), None, True)._cells._rows) < 10.5e6
+
+
 FORMS: list[tuple[str, dict[str, Any]]] = [
     ("conductor", {"eta": 0.3, "k": 3.2}),
     ("conductor", {"f0": 0.6, "compensation": "turquin"}),
