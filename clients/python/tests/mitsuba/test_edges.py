@@ -85,6 +85,29 @@ def test_derivatives_are_finite(surface: dict[str, Any], gamma: float) -> None:
         assert math.isfinite(dr.grad(variable)[0])
 
 
+@pytest.mark.parametrize("surface", [SURFACES[i] for i in (0, 1, 4)])
+def test_textures_and_their_derivatives_are_finite(surface: dict[str, Any]) -> None:
+    views, lights, u = ends()
+    gammas = surfaces.steps(0.0, 1.501, 1.6, 1.8, 2.0, 2.5, 20.0, 1e9, math.inf)
+    bsdf = mi.load_dict(
+        {**surface, "sigma": surfaces.steps(0.0, 1e-4, 0.01, 0.5, 3.0), "gamma": gammas}
+    )
+    parameters = mi.traverse(bsdf)
+    kept = (np.abs(views[:, 2]) > 1e-4) & (np.abs(lights[:, 2]) > 1e-4)
+    for some in (slice(None), kept):
+        si = hit(views[some])
+        si.uv = mi.Point2f(surfaces.uniform(len(views[some]), 2, 6))
+        sample, weight = drawn(bsdf, si, u[:, some])
+        value, pdf = bsdf.eval_pdf(CONTEXT, si, vectors(lights[some]))
+        for result in (weight, sample.pdf, sample.wo, value, pdf):
+            assert np.isfinite(numbers(result)).all()
+    for key in ("sigma.data", "gamma.data"):
+        dr.enable_grad(parameters[key])
+        parameters.update()
+        dr.backward(dr.sum(dr.sum(bsdf.eval(CONTEXT, si, vectors(lights[some])))))
+        assert np.isfinite(np.asarray(dr.grad(parameters[key]))).all()
+
+
 def test_numbers_that_are_none() -> None:
     nan = np.full((4, 3), np.nan, np.float32)
     nan[1] = [np.nan, 0, 1]

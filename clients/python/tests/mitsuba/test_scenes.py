@@ -241,6 +241,14 @@ def test_an_update_compiles_no_other_kernel() -> None:
             },
             "sigma.value",
         ),
+        # Of another gamma than that of the beginning, which has tables of its own.
+        (
+            {
+                "type": "student_t_conductor", "sigma": 0.3, "gamma": 3.0,
+                "compensation": "kulla_conty",
+            },
+            "gamma.value",
+        ),
     ):  # fmt: skip
         bsdf = mi.load_dict(surface)
         parameters = mi.traverse(bsdf)
@@ -248,7 +256,7 @@ def test_an_update_compiles_no_other_kernel() -> None:
         dr.eval(si, l)
         kernels = set()
         for value in np.linspace(1.3, 1.45, 8):
-            parameters[name] = mi.Float(value)
+            parameters[name] = mi.Float(value + (1 if name == "gamma.value" else 0))
             parameters.update()
             with dr.scoped_set_flag(dr.JitFlag.KernelHistory, True):
                 dr.kernel_history_clear()

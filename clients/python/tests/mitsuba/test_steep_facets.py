@@ -9,16 +9,20 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 import pytest
+from surfaces import dielectric, place, steps
 
 COUNT = 200_000
 
 
+@pytest.mark.parametrize("is_texture", (False, True))
 @pytest.mark.parametrize("below", (False, True))
-def test_densities_are_found_again(below: bool) -> None:
+def test_densities_are_found_again(below: bool, is_texture: bool) -> None:
     shares = {}
-    for gamma in (1.55, 1.65, 2.5):
-        glass = mi.load_dict({"type": "student_t_dielectric", "sigma": 0.3, "gamma": gamma})
+    gammas = (1.55, 1.65, 2.5)
+    for number, gamma in enumerate(gammas):
+        glass = dielectric(sigma=0.3, gamma=steps(*gammas) if is_texture else gamma)
         si = dr.zeros(mi.SurfaceInteraction3f, COUNT)
+        si.uv = mi.Point2f(place(number, len(gammas)))
         angle = math.radians(130 if below else 50)
         si.wi = mi.Vector3f(math.sin(angle), 0, math.cos(angle))
         sampler = mi.load_dict({"type": "independent"})

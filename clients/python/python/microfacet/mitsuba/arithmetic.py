@@ -37,7 +37,12 @@ def unit(x: mi.Float) -> mi.Float:
 def horner(coefficients: mi.Vector4f, w: mi.Float) -> mi.Float:
     """The cubic c0 + c1 w + c2 w^2 + c3 w^3."""
     c = coefficients
-    return (c.x + w * c.y) + (w * w) * (c.z + w * c.w)
+    return dr.fma(w * w, dr.fma(w, c.w, c.z), dr.fma(w, c.y, c.x))
+
+
+def between(a: Any, b: Any, w: mi.Float) -> Any:
+    """a where w is 0, b where it is 1, and linear between them."""
+    return dr.fma(b - a, w, a)
 
 
 def log_growth(x: mi.Float) -> mi.Float:
@@ -66,24 +71,40 @@ def place(x: mi.Float, last: int) -> tuple[mi.UInt32, mi.Float]:
 
 
 class Packets:
-    """Rows of four numbers, which are read by one instruction where the variant has it."""
+    """Rows of four numbers, which are read together."""
+
+    _width = 4
 
     def __init__(self, rows: Any) -> None:
-        """``rows``: an array (n, 1 to 4) of numbers; missing columns are padded by 0."""
+        """``rows``: an array (n, 1 to the width) of numbers; missing columns are padded by 0."""
         rows = np.asarray(rows, np.float32)
-        padded = np.zeros((len(rows), 4), np.float32)
+        padded = np.zeros((len(rows), self._width), np.float32)
         padded[:, : rows.shape[1]] = rows
         self._rows: Any
         if dr.is_jit_v(mi.Float):
             self._rows = mi.Float(padded.ravel())
         else:
-            self._rows = [mi.Vector4f(row.tolist()) for row in padded]
+            self._rows = [self._type(row.tolist()) for row in padded]
 
-    def __call__(self, index: mi.UInt32, active: mi.Bool = True) -> mi.Vector4f:
+    def __call__(self, index: mi.UInt32, active: mi.Bool = True) -> Any:
         """The row of an index, which must exist where ``active``."""
         if isinstance(self._rows, list):
-            return self._rows[index] if active else mi.Vector4f(0)
-        return dr.gather(mi.Vector4f, self._rows, index, active)
+            return self._rows[index] if active else self._type(0)
+        return dr.gather(self._type, self._rows, index, active)
+
+    @property
+    def _type(self) -> Any:
+        return mi.Vector4f
+
+
+class Pairs(Packets):
+    """Rows of two numbers."""
+
+    _width = 2
+
+    @property
+    def _type(self) -> Any:
+        return mi.Vector2f
 
 
 class Line:
@@ -101,20 +122,13 @@ class Line:
             if np.abs(off[1:-1]).max() <= error:
                 break
         self._parts, self._last = parts, len(pairs) - parts
-        self._pairs: Any
-        if dr.is_jit_v(mi.Float):
-            self._pairs = mi.Float(pairs.astype(np.float32).ravel())
-        else:
-            self._pairs = [mi.Vector2f(pair.tolist()) for pair in pairs]
+        self._pairs = Pairs(pairs)
 
     def __call__(self, x: mi.Float, active: mi.Bool = True) -> mi.Float:
         """The function at a place among the cubics, in [0, n - 1]."""
         cell, w = place(x * self._parts, self._last)
-        if isinstance(self._pairs, list):
-            pair = self._pairs[cell] if active else mi.Vector2f(0)
-        else:
-            pair = dr.gather(mi.Vector2f, self._pairs, cell, active)
-        return pair.x + w * pair.y
+        pair = self._pairs(cell, active)
+        return dr.fma(w, pair.y, pair.x)
 
 
 def lines(cubics: Any, parts: int) -> tuple[np.ndarray, np.ndarray]:

@@ -12,7 +12,7 @@ from typing import Any
 import drjit as dr
 import mitsuba as mi
 
-from .arithmetic import LARGEST, SMALLEST, Line, Packets, log_growth, unit
+from .arithmetic import LARGEST, SMALLEST, Line, Packets, between, log_growth, unit
 from .normals import cap_normal, slope_packets, table_normal
 
 #: The least squared length of a horizontal part; anything shorter is upright.
@@ -95,10 +95,11 @@ class Lobe:
 
         0 at and below the horizon; at most the largest number of single precision.
         """
-        x, y = m.x / sigma.x, m.y / sigma.y
+        inverse = 1 / sigma
+        x, y = m.x * inverse.x, m.y * inverse.y
         above = m.z > 0
         root = self.root_of_d(m.z * m.z, x * x + y * y, above)
-        scale = 1 / dr.sqrt(math.pi * sigma.x * sigma.y)
+        scale = dr.sqrt((1 / math.pi) * inverse.x * inverse.y)
         limited = dr.minimum(scale * dr.minimum(root, 1e30), _LARGEST_ROOT)
         return dr.select(above, limited * limited, 0.0)
 
@@ -139,7 +140,7 @@ class Lobe:
         raise NotImplementedError
 
     def cubic(
-        self, first: mi.UInt32, between: mi.Float, step: int, active: mi.Bool
+        self, first: mi.UInt32, w: mi.Float, step: int, active: mi.Bool
     ) -> mi.Vector4f:
         """The cubic of the slope in the plane, between that of an index and that a step further."""
         raise NotImplementedError
@@ -200,10 +201,9 @@ class Shape(Lobe):
         return share, 1 - share
 
     def cubic(
-        self, first: mi.UInt32, between: mi.Float, step: int, active: mi.Bool
+        self, first: mi.UInt32, w: mi.Float, step: int, active: mi.Bool
     ) -> mi.Vector4f:
-        a, b = self._slopes(first, active), self._slopes(first + step, active)
-        return a + between * (b - a)
+        return between(self._slopes(first, active), self._slopes(first + step, active), w)
 
 
 def g2(g1_v: mi.Float, g1_l: mi.Float, correlated: bool) -> mi.Float:
