@@ -317,7 +317,8 @@ fn smooth_white_plastic_returns_all_light() {
             let l = Vec3::new(0.8, 0.0, 0.6);
             let [both, leaving] = [white.coat_shares(l)[1], white.leaving()].map(f64::from);
             let f = entering * both / (std::f64::consts::PI * eta * eta * leaving);
-            assert!((f64::from(white.eval(v, l, RADIANCE)[0]) / f - 1.0).abs() < 1e-5);
+            // Both are 0 where a thin coat reflects all.
+            assert!((f64::from(white.eval(v, l, RADIANCE)[0]) - f).abs() <= 1e-5 * f);
         }
     }
 }
