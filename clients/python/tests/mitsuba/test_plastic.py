@@ -120,7 +120,7 @@ def test_what_single_scattering_loses() -> None:
 
 def test_the_round_lobe_stands_in_with_an_error() -> None:
     form = {"gamma": "inf", "stand_in": True, "diffuse_reflectance": 1.0}
-    bsdf = surfaces.plastic(sigma_x=0.05, sigma_y=0.5, **form)
+    bsdf = surfaces.plastic(sigma_u=0.05, sigma_v=0.5, **form)
     assert 1.1 < returned(bsdf, 0.05)[0] < 1.12
 
 

@@ -233,7 +233,6 @@ def test_an_update_compiles_no_other_kernel() -> None:
     for surface, name in (
         ({"type": "student_t_dielectric", "sigma": 0.3, "gamma": 2.5}, "eta"),
         ({"type": "student_t_conductor", "sigma": 0.3, "gamma": 2.5}, "sigma.value"),
-        ({"type": "student_t_plastic", "sigma": 0.3, "gamma": 2.5}, "sigma.value"),
         (
             {
                 "type": "student_t_conductor", "sigma": 0.3, "gamma": 2.5,
