@@ -7,7 +7,6 @@ the tables of some gammas have, whose coordinates are those of ``albedo.wgsl`` o
 
 from __future__ import annotations
 
-import functools
 from typing import Any
 
 import drjit as dr
@@ -164,7 +163,6 @@ def _three(x: mi.Float, count: int) -> tuple[mi.UInt32, list[mi.Float]]:
     return mi.UInt32(start), [ends - 0.5 * d, 1 - 2 * ends, ends + 0.5 * d]
 
 
-@functools.cache
 def _through(spline: tuple[float, ...], count: int) -> np.ndarray:
     """The matrix (count + 2, count) from values at nodes to the coefficients of the spline through
     them, of which three have these weights at a node. At both ends differences vanish.
