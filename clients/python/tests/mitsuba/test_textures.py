@@ -79,12 +79,13 @@ def test_the_share_of_the_heavy_part(family: Family, gamma: float) -> None:
 @pytest.mark.parametrize("masking", ("height-correlated", "uncorrelated"))
 def test_albedos(masking: str) -> None:
     albedos = Albedos(microfacet.Tables(), None, masking == "height-correlated")
-    cosines = np.geomspace(0.02, 1, 200).astype(np.float32)
+    cosines = np.geomspace(2e-5, 1, 300).astype(np.float32)
     for gamma in GAMMAS:
         for sigma in (0.01, 0.05, 0.3, 1.0, 3.0):
             lobe, at = microfacet.StudentT(sigma, gamma), (mi.Float(sigma), mi.Float(gamma))
             lost = 1 - lobe.albedo(cos_theta=cosines, masking=masking)
-            assert np.abs(numbers(albedos.lost(*at, mi.Float(cosines))) - lost).max() < 3e-5
+            off = np.abs(numbers(albedos.lost(*at, mi.Float(cosines))) - lost)
+            assert off[cosines >= 0.02].max() < 3e-5 and off.max() < 2e-4, (gamma, sigma)
             average = 1 - lobe.albedo_average(masking)
             assert abs(numbers(albedos.lost_average(*at))[0] - average) < 3e-5
 

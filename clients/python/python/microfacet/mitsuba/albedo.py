@@ -7,14 +7,13 @@ the tables of some gammas have, whose coordinates are those of ``albedo.wgsl`` o
 
 from __future__ import annotations
 
-import functools
 from typing import Any
 
 import drjit as dr
 import mitsuba as mi
 import numpy as np
 
-from .arithmetic import Packets, horner, log_growth, place, unit
+from .arithmetic import Numbers, Packets, horner, log_growth, place, unit
 from .family import GAMMA, shapes
 
 #: Nodes of gamma, nodes of roughness, and cells of the view; of one gamma there is room for more.
@@ -56,7 +55,7 @@ class Albedos:
         #: What is lost by gamma, roughness and view.
         self._lost = np.stack(losses)
         self._cells = Packets(self._splines(_cubics(self._lost)).reshape(-1, 4))
-        self._averages = Packets(self._splines(np.stack(averages)[..., None]).reshape(-1, 1))
+        self._averages = Numbers(self._splines(np.stack(averages)))
 
     def lost(
         self, sigma: mi.Float, gamma: mi.Float, cos_theta: mi.Float, active: mi.Bool = True
@@ -76,7 +75,7 @@ class Albedos:
         """1 - E_avg, weighted by the cosine of the view, with its digits where that is small."""
         total = mi.Float(0)
         for row, weight in self._rows(self._clamped(sigma), gamma):
-            total = total + self._averages(row, active).x * weight
+            total = total + self._averages(row, active) * weight
         return dr.minimum(dr.exp(total), 1)
 
     def row(self, sigma: float, gamma: float, cosines: np.ndarray) -> np.ndarray:
@@ -164,7 +163,6 @@ def _three(x: mi.Float, count: int) -> tuple[mi.UInt32, list[mi.Float]]:
     return mi.UInt32(start), [ends - 0.5 * d, 1 - 2 * ends, ends + 0.5 * d]
 
 
-@functools.cache
 def _through(spline: tuple[float, ...], count: int) -> np.ndarray:
     """The matrix (count + 2, count) from values at nodes to the coefficients of the spline through
     them, of which three have these weights at a node. At both ends differences vanish.

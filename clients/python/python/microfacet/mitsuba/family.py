@@ -29,7 +29,6 @@ SEAM = 1.8
 #: The least 1/(gamma - 1), from which derivatives are finite: Beckmann to rounding.
 _LEAST_S = 2.0**-40
 
-
 #: Up to this gamma D needs no series for what 1 + x rounds away.
 _MODERATE = 10.0
 
@@ -114,8 +113,8 @@ class Family:
         self.albedos: dict[bool, Any] = {}
 
     def at(self, gamma: mi.Float, low: float = GAMMA[0], high: float = GAMMA[1]) -> FamilyLobe:
-        """The lobe of a gamma, which is clamped to the range, and known to lie in [low, high]: all
-        below 1.8, or all above, is faster.
+        """The lobe of a gamma, which is clamped to the range, and known to lie in [low, high]: what
+        these do not need is left out.
         """
         return FamilyLobe(self, dr.clip(gamma, *GAMMA), low, high)
 
