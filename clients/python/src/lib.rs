@@ -1,9 +1,10 @@
 //! The extension module of the Python package `microfacet`.
 //!
-//! [`arrays`] takes arguments, which [`broadcast`] runs functions of on all cores; [`words`] turns
-//! words and errors into those of Python. [`tables`] loads and bakes sets, [`lobe`] and [`bsdf`] are
-//! the run-time crate, [`exact`] the model, [`distribution`] what lobes of both have in common.
-//! [`surface`] is roughness and shape of one lobe or many, [`set`] what a set's lobes share.
+//! [`arrays`] takes arguments, of which [`broadcast`] runs functions on all cores; [`words`] turns
+//! words and errors into those of Python. [`tables`] loads and bakes sets, [`lobe`], [`material`]
+//! and [`bsdf`] are the run-time crate, [`exact`] the model, [`distribution`] what lobes of both
+//! have in common. [`surface`] is roughness and shape of one lobe or many, [`set`] what lobes of a
+//! set share.
 //! [`shape`] has the tables of a shape for lookups elsewhere, and [`farm`] what processes bake
 //! together.
 

@@ -81,7 +81,8 @@ impl PyTables {
     }
 
     /// Student-t lobes of these tables, which must cover their shapes; arguments are those of
-    /// microfacet.StudentT. For arrays the tables must be over a range of shapes, as those built in.
+    /// microfacet.StudentT. For arrays the tables must be over a range of shapes, as those built
+    /// in are.
     #[pyo3(signature = (sigma=None, gamma=None, *, sigma_x=None, sigma_y=None, **others),
            text_signature = "($self, sigma=None, gamma=None, *, sigma_x=None, sigma_y=None)")]
     fn student_t(
