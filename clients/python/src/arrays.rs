@@ -11,14 +11,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PySlice, PyTuple};
 use rayon::prelude::*;
 
+pub(crate) use crate::broadcast::{Any, Number};
 use crate::broadcast::{Argument, Cost, Values, each, has_threads, shown};
-
-/// An object of Python: an argument or a result.
-pub(crate) type Any<'py> = Bound<'py, PyAny>;
-
-pub(crate) trait Number: Element + Copy + Default + Into<f64> + Send + Sync {}
-
-impl<T: Element + Copy + Default + Into<f64> + Send + Sync> Number for T {}
 
 /// By how much the length of a direction, or a cosine, may be off: what half precision rounds.
 const ROUNDING: f64 = 1e-3;

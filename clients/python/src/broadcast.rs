@@ -5,12 +5,17 @@ use std::ops::Range;
 use std::process;
 use std::sync::OnceLock;
 
-use numpy::{PyArrayDyn, PyArrayMethods};
+use numpy::{Element, PyArrayDyn, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
-use crate::arrays::{Any, Number};
+/// An object of Python: an argument or a result.
+pub(crate) type Any<'py> = Bound<'py, PyAny>;
+
+pub(crate) trait Number: Element + Copy + Default + Into<f64> + Send + Sync {}
+
+impl<T: Element + Copy + Default + Into<f64> + Send + Sync> Number for T {}
 
 /// Items for one call of a function, which may work on several at once.
 const CHUNK: usize = 1024;

@@ -10,14 +10,13 @@ use numpy::PyReadonlyArray2;
 use pyo3::basic::CompareOp;
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{PyBytes, PyDict, PyTuple};
 
 use crate::arrays::Any;
 use crate::broadcast::{Cost, One, each};
 use crate::distribution::{Kind, PyDistribution, View, azimuth_matters};
 use crate::set::Set;
 use crate::surface::{Lobes, Surface};
-use crate::tables::PyTables;
 use crate::words::{self, refused, unbound};
 
 /// What a lobe is made again from.
@@ -229,7 +228,8 @@ impl PyLobe {
         flags?.rich_compare(0, CompareOp::Ne)
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Any<'py>, (PyTables,))> {
+    /// A call of a method of the tables, which go along unless they are those built in.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Any<'py>, (Any<'py>,))> {
         let (positional, arguments) = match &self.made {
             Made::StudentT(surface) => {
                 (PyTuple::new(py, ["student_t"])?, Some(surface.arguments(py)?))
@@ -241,7 +241,14 @@ impl PyLobe {
             Made::Material(name) => (("material", name).into_pyobject(py)?, None),
         };
         let call = py.import("operator")?.getattr("methodcaller")?;
-        Ok((call.call(positional, arguments.as_ref())?, (PyTables::of(&self.set),)))
+        let class = py.import("microfacet._microfacet")?.getattr("Tables")?;
+        let tables = if Arc::ptr_eq(&self.set, &Set::embedded()) {
+            class.call0()?
+        } else {
+            let bytes = PyBytes::new(py, &self.set.bytes()?);
+            class.call_method1("_of_bytes", (bytes, "of a lobe"))?
+        };
+        Ok((call.call(positional, arguments.as_ref())?, (tables,)))
     }
 
     /// Seconds that Rust takes on one thread for `sample_visible_normal` of the same arrays, which

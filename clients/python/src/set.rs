@@ -5,6 +5,10 @@ use std::sync::{Arc, LazyLock, OnceLock};
 
 use microfacet_sampler::albedo::FamilyAlbedo;
 use microfacet_sampler::{Family, Masking, MaterialError, Tables};
+use microfacet_tables::encode;
+use pyo3::PyResult;
+
+use crate::words::refused;
 
 /// The tables of a set, and its families.
 pub(crate) struct Set {
@@ -22,6 +26,11 @@ impl Set {
     pub(crate) fn embedded() -> Arc<Self> {
         static EMBEDDED: LazyLock<Arc<Set>> = LazyLock::new(|| Set::new(Tables::embedded()));
         Arc::clone(&EMBEDDED)
+    }
+
+    /// The bytes of its file.
+    pub(crate) fn bytes(&self) -> PyResult<Vec<u8>> {
+        encode(self.provenance(), self.tables.tables()).map_err(refused)
     }
 
     /// Lobes at any roughness and shape.

@@ -12,7 +12,7 @@ use microfacet_baker::store::{self, Format};
 use microfacet_baker::table_set::{Settings, Target, bake_with};
 use microfacet_baker::table_spec::Quality;
 use microfacet_sampler::Tables;
-use microfacet_tables::{Precision, describe, encode};
+use microfacet_tables::{Precision, describe};
 use pyo3::exceptions::{PyFileNotFoundError, PyRuntimeError, PyTypeError, PyUserWarning};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
@@ -44,13 +44,6 @@ const PATIENCE: Duration = Duration::from_millis(20);
 pub(crate) struct PyTables {
     pub(crate) set: Arc<Set>,
     origin: String,
-}
-
-impl PyTables {
-    /// The set that a lobe is from.
-    pub(crate) fn of(set: &Arc<Set>) -> Self {
-        Self { set: Arc::clone(set), origin: "of a lobe".into() }
-    }
 }
 
 #[pymethods]
@@ -178,8 +171,7 @@ impl PyTables {
         if Arc::ptr_eq(&self.set, &Set::embedded()) {
             return Ok((class.into_any(), PyTuple::empty(py)));
         }
-        let bytes = encode(self.set.provenance(), self.set.tables()).map_err(refused)?;
-        let all = (PyBytes::new(py, &bytes), &self.origin).into_pyobject(py)?;
+        let all = (PyBytes::new(py, &self.set.bytes()?), &self.origin).into_pyobject(py)?;
         Ok((class.getattr("_of_bytes")?, all))
     }
 
