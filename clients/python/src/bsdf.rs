@@ -3,7 +3,7 @@
 use pyo3::basic::CompareOp;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyEllipsis, PySlice, PyTuple};
+use pyo3::types::{PyBool, PyDict, PyEllipsis, PySlice, PyTuple};
 
 use microfacet_sampler::{
     AnyBsdf, Bsdf, BsdfSample, Conductor, ConductorFresnel, Dielectric, Event, Lobe, Plastic,
@@ -144,6 +144,10 @@ impl PyBsdf {
     /// Whether all events are deltas, so that eval is 0 everywhere.
     #[getter]
     fn is_delta<'py>(&self, py: Python<'py>) -> PyResult<Any<'py>> {
+        if let Material::One(bsdf) = &self.bsdf {
+            let is_delta = Bsdf::<3>::is_delta(&**bsdf);
+            return Ok(PyBool::new(py, is_delta).to_owned().into_any());
+        }
         let flags = of!(&self.bsdf, all => each(py, all, Cost::Lookup, |bsdf| {
             [f32::from(u8::from(bsdf.is_delta()))]
         }));

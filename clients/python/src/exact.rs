@@ -19,6 +19,9 @@ use crate::words::{self, refused};
 /// Tolerance of the quadrature of albedos.
 const TOLERANCE: f64 = 1e-9;
 
+/// The most shapes whose integrators are kept, a few hundred kilobytes each.
+const MOST: usize = 256;
+
 /// Tolerance for a tilted lobe, whose clamped masking has a kink.
 const TOLERANCE_TILTED: f64 = 1e-6;
 
@@ -36,35 +39,41 @@ const TOLERANCE_TILTED: f64 = 1e-6;
 #[pyclass(name = "Lobe", module = "microfacet.exact", extends = PyDistribution, subclass, frozen)]
 pub(crate) struct ExactLobe {
     kind: Kind,
-    /// Of each shape, in rising order; made once, which takes some milliseconds.
+    /// Of each shape, in rising order; made once, which takes some milliseconds. Of more than
+    /// [`MOST`] shapes none is kept.
     integrators: Vec<(Shape, OnceLock<AlbedoIntegrator>)>,
 }
 
 impl ExactLobe {
     fn new(kind: Kind, about: String) -> PyClassInitializer<Self> {
-        let mut shapes = match &kind {
+        let shapes = match &kind {
             Kind::Exact(lobe) => vec![*lobe.shape()],
             Kind::Tilted(lobe) => vec![*lobe.shape()],
             Kind::ExactFamily(all) => {
                 let mut gammas: Vec<f64> = all.gammas().collect();
                 gammas.sort_unstable_by(f64::total_cmp);
                 gammas.dedup();
+                gammas.truncate(if gammas.len() > MOST { 0 } else { MOST });
                 gammas.into_iter().map(|gamma| *student_t([1.0; 2], gamma).shape()).collect()
             }
             Kind::Tables(_) | Kind::Family(_) => Vec::new(),
         };
-        let integrators = shapes.drain(..).map(|shape| (shape, OnceLock::new())).collect();
+        let integrators = shapes.into_iter().map(|shape| (shape, OnceLock::new())).collect();
         PyDistribution::new(kind.clone(), about).add_subclass(Self { kind, integrators })
     }
 
-    fn integrator(&self, gamma: f64) -> &AlbedoIntegrator {
+    /// What a function makes of the integrator of one shape.
+    fn with_integrator<R>(&self, shape: &Shape, f: impl FnOnce(&AlbedoIntegrator) -> R) -> R {
         let tolerance = match self.kind {
             Kind::Tilted(_) => TOLERANCE_TILTED,
             _ => TOLERANCE,
         };
-        let found = self.integrators.binary_search_by(|(of, _)| of.gamma().total_cmp(&gamma));
-        let (shape, integrator) = &self.integrators[found.expect("it is of one of the lobes")];
-        integrator.get_or_init(|| AlbedoIntegrator::new(*shape, tolerance))
+        let make = || AlbedoIntegrator::new(*shape, tolerance);
+        let gamma = shape.gamma();
+        match self.integrators.binary_search_by(|(of, _)| of.gamma().total_cmp(&gamma)) {
+            Ok(found) => f(self.integrators[found].1.get_or_init(make)),
+            Err(_) => f(&make()),
+        }
     }
 
     /// Albedos of an upright lobe for a view from above, given by cosine and azimuth, under Fresnel
@@ -76,11 +85,10 @@ impl ExactLobe {
         phi: f64,
         weight: impl Fn(f64) -> [f64; N],
     ) -> Result<Albedo<N>, ParameterError> {
-        let integrator = self.integrator(lobe.shape().gamma());
-        match [lobe.sigma_x(), lobe.sigma_y()] {
+        self.with_integrator(lobe.shape(), |integrator| match [lobe.sigma_x(), lobe.sigma_y()] {
             [x, y] if x == y => integrator.reflection(x, cos, weight),
             sigma => integrator.reflection_anisotropic(sigma, cos, phi, weight),
-        }
+        })
     }
 
     /// Albedos of views; NaN for those from below.
@@ -120,8 +128,9 @@ impl ExactLobe {
             }
             Kind::Tilted(lobe) => views.each(py, One(&**lobe), Cost::Quadrature, |lobe, v| {
                 let (cos, phi) = numbers(v);
-                let integrator = self.integrator(lobe.shape().gamma());
-                of(integrator.reflection_skewed(lobe, cos, phi, &weight))
+                of(self.with_integrator(lobe.shape(), |integrator| {
+                    integrator.reflection_skewed(lobe, cos, phi, &weight)
+                }))
             }),
             Kind::Tables(_) | Kind::Family(_) => unreachable!("they are of tables"),
         }
@@ -167,19 +176,18 @@ impl ExactLobe {
     #[pyo3(signature = (masking="height-correlated"))]
     fn albedo_average<'py>(&self, py: Python<'py>, masking: &str) -> PyResult<Any<'py>> {
         let form = words::masking(masking)?;
-        let average = |sigma, gamma| {
-            let average = self.integrator(gamma).average(sigma, |_| [1.0]);
+        let average = |lobe: &StudentT| {
+            let average = self.with_integrator(lobe.shape(), |integrator| {
+                integrator.average(lobe.sigma_x(), |_| [1.0])
+            });
             average.map_or([f64::NAN], |average| average.of(form))
         };
         match &self.kind {
             Kind::Exact(lobe) if lobe.sigma_x() == lobe.sigma_y() => {
-                each(py, One(lobe), Cost::Quadrature, |lobe| {
-                    average(lobe.sigma_x(), lobe.shape().gamma())
-                })
+                each(py, One(lobe), Cost::Quadrature, average)
             }
             Kind::ExactFamily(all) if all.is_round() => {
-                let lobes = all.at(|[sigma, _], gamma| average(sigma, gamma));
-                each(py, lobes, Cost::Quadrature, |average| average)
+                each(py, all.at(student_t), Cost::Quadrature, |lobe| average(&lobe))
             }
             _ => Err(refused(
                 "averages are integrated for round lobes alone; average albedo(v) over views",

@@ -10,7 +10,7 @@ use numpy::PyReadonlyArray2;
 use pyo3::basic::CompareOp;
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyTuple};
+use pyo3::types::{PyBool, PyBytes, PyDict, PyTuple};
 
 use crate::arrays::Any;
 use crate::broadcast::{Cost, One, each};
@@ -215,17 +215,13 @@ impl PyLobe {
     /// Whether a renderer should treat the surface as a mirror: mean slopes are below 1e-3.
     #[getter]
     fn is_effectively_smooth<'py>(&self, py: Python<'py>) -> PyResult<Any<'py>> {
-        let flag = |smooth: bool| [f32::from(u8::from(smooth))];
-        let flags = match &self.kind {
-            Kind::Family(all) => {
-                let lobes = all.surface.at(|sigma, gamma| all.lobe(sigma, gamma));
-                each(py, lobes, Cost::Lookup, |lobe| flag(lobe.is_effectively_smooth()))
-            }
-            _ => {
-                each(py, One(self.one()?), Cost::Lookup, |lobe| flag(lobe.is_effectively_smooth()))
-            }
+        let Kind::Family(all) = &self.kind else {
+            let smooth = self.one()?.is_effectively_smooth();
+            return Ok(PyBool::new(py, smooth).to_owned().into_any());
         };
-        flags?.rich_compare(0, CompareOp::Ne)
+        let lobes = all.surface.at(|sigma, gamma| all.lobe(sigma, gamma));
+        each(py, lobes, Cost::Lookup, |lobe| [f32::from(u8::from(lobe.is_effectively_smooth()))])?
+            .rich_compare(0, CompareOp::Ne)
     }
 
     /// A call of a method of the tables, which go along unless they are those built in.

@@ -115,6 +115,12 @@ def test_the_model_is_that_of_numbers():
         turned.albedo(0.5)
 
 
+def test_the_model_has_albedos_of_more_shapes_than_it_keeps():
+    gamma = np.linspace(1.6, 4, 257)
+    many = exact.StudentT(0.3, gamma)
+    assert many.albedo(0.8)[[0, 256]].tolist() == [exact.StudentT(0.3, g).albedo(0.8) for g in (1.6, 4)]
+
+
 @pytest.mark.parametrize("masking", ["height-correlated", "uncorrelated"])
 def test_albedos_are_those_of_numbers(masking):
     sigma, gamma = np.array([0.05, 0.3, 1.0, 3.0]), np.array([1.6, 2.0, 2.5, math.inf])
@@ -172,6 +178,7 @@ def test_materials_are_those_of_numbers(material, compensation, ranges):
     f, pdf, sample = many.eval(v, l), many.pdf(v, l), many.sample(v, 0.3, u)
     assert f.shape == sample.weight.shape == (300, 3, 3) and pdf.shape == (300, 3)
     assert not many.is_delta.any()
+    assert made(tables.student_t(sigma[0], gamma[0])).is_delta is False
     for i in range(3):
         one = made(tables.student_t(sigma[i], gamma[i]))
         # A volume over all shapes is coarser than one lobe's tables.
