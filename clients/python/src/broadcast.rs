@@ -143,7 +143,8 @@ impl<'a, T: Copy, const N: usize> Values<'a, T, N> {
         self.slice(i..i + 1)[0]
     }
 
-    fn slice(&self, range: Range<usize>) -> Cow<'_, [[T; N]]> {
+    /// The items of a range of results.
+    pub(crate) fn slice(&self, range: Range<usize>) -> Cow<'_, [[T; N]]> {
         if let [(_, 1)] = self.axes[..] {
             return Cow::Borrowed(&self.items[range]);
         }
@@ -262,34 +263,13 @@ pub(crate) fn each<'py, T: Number, A: Argument, const M: usize>(
     })
 }
 
-/// A function of one argument, chunk by chunk.
-pub(crate) fn map<'py, 'a, T: Number + 'a, A, const N: usize, const M: usize>(
+/// A function of arguments, which broadcast, chunk by chunk: it is given a range of results.
+pub(crate) fn by_chunks<'py, T: Number, A: Argument, const M: usize>(
     py: Python<'py>,
-    a: A,
-    f: impl Fn(&[[T; N]], &mut [[T; M]]) + Sync,
-) -> PyResult<Any<'py>>
-where
-    A: Argument<Chunks = Values<'a, T, N>>,
-{
-    let batch = broadcast(&a)?;
-    let a = a.chunks(&batch);
-    filled(py, &batch, Cost::Lookup, |range, out| f(&a.slice(range), out))
-}
-
-/// A function of two arguments, which broadcast, chunk by chunk.
-pub(crate) fn map2<'py, 'a, T: Number + 'a, A, B, const N: usize, const O: usize, const M: usize>(
-    py: Python<'py>,
-    a: A,
-    b: B,
-    f: impl Fn(&[[T; N]], &[[T; O]], &mut [[T; M]]) + Sync,
-) -> PyResult<Any<'py>>
-where
-    (A, B): Argument<Chunks = (Values<'a, T, N>, Values<'a, T, O>)>,
-{
-    let both = (a, b);
-    let batch = broadcast(&both)?;
-    let (a, b) = both.chunks(&batch);
-    let fill =
-        |range: Range<usize>, out: &mut [_]| f(&a.slice(range.clone()), &b.slice(range), out);
-    filled(py, &batch, Cost::Lookup, fill)
+    arguments: A,
+    f: impl Fn(&A::Chunks, Range<usize>, &mut [[T; M]]) + Sync,
+) -> PyResult<Any<'py>> {
+    let batch = broadcast(&arguments)?;
+    let chunks = arguments.chunks(&batch);
+    filled(py, &batch, Cost::Lookup, |range, out| f(&chunks, range, out))
 }

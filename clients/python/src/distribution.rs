@@ -1,5 +1,6 @@
 //! What lobes of both precisions have in common: closed forms, masking and visible normals.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use microfacet_model::{Ellipsoid, MicrofacetDistribution as _, StudentT};
@@ -9,8 +10,8 @@ use numpy::Element;
 use pyo3::prelude::*;
 
 use crate::arrays::{Any, Input, Number};
-use crate::broadcast::{Argument, Chunks, Cost, One, each, map, map2};
-use crate::surface::{Lobes, Surface};
+use crate::broadcast::{Argument, Chunks, Cost, One, by_chunks, each};
+use crate::surface::{Lobes, Surface, hit};
 use crate::words::{self, refused};
 
 /// A lobe or lobes by tables, in single precision, or by the model, in double precision.
@@ -94,7 +95,8 @@ impl PyDistribution {
         of!(&self.kind,
             One(lobe) => {
                 let v = Input::directions("v", v)?;
-                map(py, &v, |v: &[[f32; 3]], g1: &mut [[f32; 1]]| {
+                by_chunks(py, &v, |v, range, g1: &mut [[f32; 1]]| {
+                    let v: &[[f32; 3]] = &v.slice(range);
                     lobe.g1_batch(v, g1.as_flattened_mut()).expect("as many of each");
                 })
             },
@@ -149,11 +151,23 @@ impl PyDistribution {
             Kind::Tables(_) | Kind::Family(_) => Cost::Lookup,
             _ => Cost::Quadrature,
         };
+        if let Kind::Family(all) = &self.kind {
+            let (v, u) = (Input::directions("v", v)?, Input::new("u", u)?);
+            return by_chunks(py, (all.surface.at(hit), &v, &u), |(hits, v, u), range, m| {
+                let (v, u): (Cow<[[f32; 3]]>, _) = (v.slice(range.clone()), u.slice(range.clone()));
+                let (sigma, gamma): (Vec<_>, Vec<_>) =
+                    (0..range.len()).map(hits.chunk(range)).unzip();
+                let m: &mut [[f32; 3]] = m;
+                all.family.sample_batch(&sigma, &gamma, &v, &u, m).expect("as many of each");
+            });
+        }
         of!(&self.kind,
             One(lobe) => {
                 let (v, u) = (Input::directions("v", v)?, Input::new("u", u)?);
-                map2(py, &v, &u, |v: &[[f32; 3]], u: &[[f32; 2]], m: &mut [[f32; 3]]| {
-                    lobe.sample_batch(v, u, m).expect("as many of each");
+                by_chunks(py, (&v, &u), |(v, u), range, m: &mut [[f32; 3]]| {
+                    let (v, u) = (v.slice(range.clone()), u.slice(range));
+                    let v: &[[f32; 3]] = &v;
+                    lobe.sample_batch(v, &u, m).expect("as many of each");
                 })
             },
             lobes, to => {

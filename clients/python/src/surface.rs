@@ -119,10 +119,8 @@ impl Surface {
     /// Roughness and shape of each lobe.
     pub(crate) fn hits(&self) -> (Vec<[f32; 2]>, Vec<f32>) {
         let n = self.batch.iter().product();
-        let chunks =
-            self.at(|sigma, gamma| (sigma.map(|x| x as f32), gamma as f32)).chunks(&self.batch);
-        let hit = chunks.chunk(0..n);
-        (0..n).map(hit).unzip()
+        let chunks = self.at(hit).chunks(&self.batch);
+        (0..n).map(chunks.chunk(0..n)).unzip()
     }
 
     /// Something made of roughness and shape for each result.
@@ -162,6 +160,11 @@ impl Surface {
             None => format!("StudentT of shape {}", crate::broadcast::shown(&self.batch)),
         }
     }
+}
+
+/// Roughness and shape in single precision.
+pub(crate) fn hit(sigma: [f64; 2], gamma: f64) -> ([f32; 2], f32) {
+    (sigma.map(|sigma| sigma as f32), gamma as f32)
 }
 
 /// A tuple or list of two, which are roughness along x and y; of as many numbers as else it is an
