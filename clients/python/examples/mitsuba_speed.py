@@ -40,6 +40,9 @@ def main() -> None:
             "type": "roughconductor", "distribution": "beckmann", "alpha": options.sigma, **metal,
         },
     }  # fmt: skip
+    surface = {**surfaces["roughconductor, ggx"]}
+    surface["alpha"] = bitmap(0.96 * options.sigma, 1.04 * options.sigma)
+    surfaces["roughconductor, ggx, texture of alpha"] = surface
     for gamma in (1.6, 2.0, 2.5, 4.0, float("inf")):
         surfaces[f"student_t_conductor, gamma = {gamma:g}"] = {
             "type": "student_t_conductor", "gamma": gamma, "sigma": options.sigma,
