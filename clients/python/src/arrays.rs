@@ -53,7 +53,11 @@ impl<'py, T: Number, const N: usize> Input<'py, T, N> {
         });
         let once = given.get_item(PyTuple::new(py, index.collect::<PyResult<Vec<_>>>()?)?)?;
         // A copy only where it has another type, order or alignment.
-        let array = numpy.call_method1("asarray", (once, T::get_dtype(py), "C"))?;
+        let array = numpy.call_method1("asarray", (once, T::get_dtype(py), "C"));
+        let array = array.map_err(|why| match why.is_instance_of::<PyValueError>(py) {
+            true => PyValueError::new_err(format!("{name}: {}", why.value(py))),
+            false => why,
+        })?;
         let mut array = array.cast_into::<PyArrayDyn<T>>()?;
         if !array.is_aligned() {
             array = array.call_method0("copy")?.cast_into()?;

@@ -6,6 +6,7 @@ use std::process;
 use std::sync::OnceLock;
 
 use numpy::{Element, PyArrayDyn, PyArrayMethods};
+use pyo3::basic::CompareOp;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
@@ -261,6 +262,17 @@ pub(crate) fn each<'py, T: Number, A: Argument, const M: usize>(
             *out = f(item(i));
         }
     })
+}
+
+/// A flag for each item: a bool of Python where there is one.
+pub(crate) fn flags<'py, A: Argument>(
+    py: Python<'py>,
+    arguments: A,
+    f: impl Fn(<A::Chunks as Chunks>::Item) -> bool + Sync,
+) -> PyResult<Any<'py>> {
+    let numbers = each(py, arguments, Cost::Lookup, |item| [f32::from(u8::from(f(item)))])?;
+    let flags = numbers.rich_compare(0, CompareOp::Ne)?;
+    if flags.getattr("ndim")?.eq(0)? { flags.call_method0("item") } else { Ok(flags) }
 }
 
 /// A function of arguments, which broadcast, chunk by chunk: it is given a range of results.

@@ -3,18 +3,15 @@
 use pyo3::basic::CompareOp;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict, PyEllipsis, PySlice, PyTuple};
+use pyo3::types::{PyDict, PyEllipsis, PySlice, PyTuple};
 
-use microfacet_sampler::{
-    AnyBsdf, Bsdf, BsdfSample, Conductor, ConductorFresnel, Dielectric, Event, Lobe, Plastic,
-};
+use microfacet_sampler::{AnyBsdf, Bsdf, BsdfSample, ConductorFresnel, Event, Lobe, Plastic};
 
 use crate::arrays::{Any, Input};
-use crate::broadcast::{Cost, One, each};
-use crate::distribution::Kind;
+use crate::broadcast::{Cost, One, each, flags};
 use crate::lobe::PyLobe;
 use crate::material::{Material, of};
-use crate::words::{self, refused, unbound};
+use crate::words::{self, Form, refused, unbound};
 
 /// A bidirectional scattering distribution function in three channels.
 ///
@@ -39,6 +36,16 @@ pub(crate) struct PyBsdf {
 impl PyBsdf {
     pub(crate) fn new(bsdf: impl Into<AnyBsdf>, about: String) -> Self {
         Self { bsdf: Material::of(bsdf), about }
+    }
+
+    /// The plastic, if it is one, of one lobe.
+    fn plastic(&self) -> PyResult<&Plastic<Lobe>> {
+        if let Material::One(bsdf) = &self.bsdf
+            && let AnyBsdf::Plastic(plastic) = &**bsdf
+        {
+            return Ok(plastic);
+        }
+        Err(refused("this is for one coat, not for lobes of arrays"))
     }
 }
 
@@ -144,14 +151,7 @@ impl PyBsdf {
     /// Whether all events are deltas, so that eval is 0 everywhere.
     #[getter]
     fn is_delta<'py>(&self, py: Python<'py>) -> PyResult<Any<'py>> {
-        if let Material::One(bsdf) = &self.bsdf {
-            let is_delta = Bsdf::<3>::is_delta(&**bsdf);
-            return Ok(PyBool::new(py, is_delta).to_owned().into_any());
-        }
-        let flags = of!(&self.bsdf, all => each(py, all, Cost::Lookup, |bsdf| {
-            [f32::from(u8::from(bsdf.is_delta()))]
-        }));
-        flags?.rich_compare(0, CompareOp::Ne)
+        of!(&self.bsdf, all => flags(py, all, |bsdf| bsdf.is_delta()))
     }
 
     fn __repr__(&self) -> &str {
@@ -221,19 +221,8 @@ impl PyConductor {
             }
         };
         let about = format!("Conductor({})", lobe.repr()?);
-        let PyLobe { kind, set, .. } = lobe.get();
-        let bsdf = match kind {
-            Kind::Family(lobes) => {
-                let masking = words::masking(masking)?;
-                let compensation = words::compensation(compensation)?;
-                Material::conductor(lobes, set, fresnel, masking, compensation, stand_in)?
-            }
-            _ => {
-                let settings = words::settings(masking, compensation, set, stand_in)?;
-                let lobe = Lobe::clone(lobe.get().one()?);
-                Material::of(Conductor::new(lobe, fresnel, settings).map_err(unbound)?)
-            }
-        };
+        let form = Form::new(masking, compensation, stand_in)?;
+        let bsdf = Material::conductor(lobe.get(), fresnel, &form)?;
         Ok(PyClassInitializer::from(PyBsdf { bsdf, about }).add_subclass(Self {}))
     }
 }
@@ -269,19 +258,8 @@ impl PyDielectric {
         words::lead_on("Dielectric", others)?;
         let eta = words::index(eta)?;
         let about = format!("Dielectric({}, eta={eta})", lobe.repr()?);
-        let PyLobe { kind, set, .. } = lobe.get();
-        let bsdf = match kind {
-            Kind::Family(lobes) => {
-                let masking = words::masking(masking)?;
-                let compensation = words::compensation(compensation)?;
-                Material::dielectric(lobes, set, eta, masking, compensation, stand_in)?
-            }
-            _ => {
-                let settings = words::settings(masking, compensation, set, stand_in)?;
-                let lobe = Lobe::clone(lobe.get().one()?);
-                Material::of(Dielectric::new(lobe, eta, settings).map_err(unbound)?)
-            }
-        };
+        let form = Form::new(masking, compensation, stand_in)?;
+        let bsdf = Material::dielectric(lobe.get(), eta, &form)?;
         Ok(PyClassInitializer::from(PyBsdf { bsdf, about }).add_subclass(Self {}))
     }
 }
@@ -296,7 +274,7 @@ impl PyDielectric {
 /// >>> bool(r > g == b)
 /// True
 #[pyclass(name = "Plastic", module = "microfacet", extends = PyBsdf, frozen)]
-pub(crate) struct PyPlastic(Option<Plastic<Lobe>>);
+pub(crate) struct PyPlastic {}
 
 #[pymethods]
 impl PyPlastic {
@@ -319,42 +297,24 @@ impl PyPlastic {
         let base = base.ok_or_else(|| PyTypeError::new_err("base is missing: a colour"))?;
         let about = format!("Plastic({}, eta={eta})", lobe.repr()?);
         let base = words::reflectance("base", base)?;
-        let PyLobe { kind, set, .. } = lobe.get();
-        let (bsdf, one) = match kind {
-            Kind::Family(lobes) => {
-                let masking = words::masking(masking)?;
-                let compensation = words::compensation(compensation)?;
-                let all = Material::plastic(lobes, set, eta, base, masking, compensation, stand_in);
-                (all?, None)
-            }
-            _ => {
-                let settings = words::settings(masking, compensation, set, stand_in)?;
-                let lobe = Lobe::clone(lobe.get().one()?);
-                let plastic = Plastic::new(lobe, eta, base, settings).map_err(unbound)?;
-                (Material::of(plastic.clone()), Some(plastic))
-            }
-        };
-        Ok(PyClassInitializer::from(PyBsdf { bsdf, about }).add_subclass(Self(one)))
+        let form = Form::new(masking, compensation, stand_in)?;
+        let bsdf = Material::plastic(lobe.get(), eta, base, &form)?;
+        Ok(PyClassInitializer::from(PyBsdf { bsdf, about }).add_subclass(Self {}))
     }
 
     /// The shares of the light of views v that one bounce off the coat reflects and transmits,
     /// shape (..., 2), each in [0, 1]; what is missing to 1 is lost to further bounces.
-    fn coat_shares<'py>(&self, py: Python<'py>, v: &Any<'py>) -> PyResult<Any<'py>> {
-        let v = Input::directions("v", v)?;
-        let one = One(self.one()?);
-        each(py, (one, &v), Cost::Lookup, |(plastic, v): (_, [f32; 3])| plastic.coat_shares(v))
+    fn coat_shares<'py>(slf: &Bound<'py, Self>, v: &Any<'py>) -> PyResult<Any<'py>> {
+        let input = Input::directions("v", v)?;
+        let coat = One(slf.as_super().get().plastic()?);
+        let shares = |(coat, v): (&Plastic<Lobe>, [f32; 3])| coat.coat_shares(v);
+        each(slf.py(), (coat, &input), Cost::Lookup, shares)
     }
 
     /// The share of diffuse light from inside that the coat does not reflect, in (0, 1].
     #[getter]
-    fn leaving(&self) -> PyResult<f32> {
-        self.one().map(Plastic::leaving)
-    }
-}
-
-impl PyPlastic {
-    fn one(&self) -> PyResult<&Plastic<Lobe>> {
-        self.0.as_ref().ok_or_else(|| refused("this is for one coat, not for lobes of arrays"))
+    fn leaving(slf: &Bound<'_, Self>) -> PyResult<f32> {
+        slf.as_super().get().plastic().map(Plastic::leaving)
     }
 }
 

@@ -233,10 +233,8 @@ impl<'py, T: Number> View<'py, T> {
             }
             // Three cosines look like one direction, though rarely of length 1.
             (Some(v), None) => Input::directions("v", v).map(Self::Directions).map_err(|why| {
-                refused(format!(
-                    "{}; an array of cosines goes into cos_theta",
-                    words::text(v.py(), &why)
-                ))
+                let why = why.value(v.py());
+                refused(format!("{why}; an array of cosines goes into cos_theta"))
             }),
             (None, Some(cos)) => Ok(Self::Cosines(Input::cosines("cos_theta", cos)?)),
             _ => Err(refused("give either v, directions of shape (..., 3), or cos_theta")),

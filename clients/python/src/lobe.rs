@@ -7,16 +7,15 @@ use microfacet_sampler::albedo::{Albedo, AlbedoAt, DirectionalAlbedo, FamilyAlbe
 use microfacet_sampler::lobe::{Batch, LobeKey, Roughness, Tabulated};
 use microfacet_sampler::{Lobe, MicrofacetDistribution, Skew};
 use numpy::PyReadonlyArray2;
-use pyo3::basic::CompareOp;
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyBytes, PyDict, PyTuple};
+use pyo3::types::{PyBytes, PyDict, PyTuple};
 
 use crate::arrays::Any;
-use crate::broadcast::{Cost, One, each};
+use crate::broadcast::{Cost, One, each, flags};
 use crate::distribution::{Kind, PyDistribution, View, azimuth_matters};
 use crate::set::Set;
-use crate::surface::{Lobes, Surface};
+use crate::surface::{Lobes, Surface, round_sigma};
 use crate::words::{self, refused, unbound};
 
 /// What a lobe is made again from.
@@ -50,14 +49,9 @@ pub(crate) struct PyLobe {
     made: Made,
 }
 
-/// The roughness of the round lobe that stands in for one of roughness σx, σy.
-pub(crate) fn round_sigma([x, y]: [f64; 2]) -> f32 {
-    if x == y { x as f32 } else { (x * y).sqrt() as f32 }
-}
-
 /// The albedo at one roughness and shape; of a lobe that is not round that of its stand-in.
 pub(crate) fn albedo_at(family: &FamilyAlbedo, sigma: [f64; 2], gamma: f64) -> AlbedoAt<'_> {
-    family.at(round_sigma(sigma), gamma as f32)
+    family.at(round_sigma(sigma) as f32, gamma as f32)
 }
 
 impl PyLobe {
@@ -215,13 +209,13 @@ impl PyLobe {
     /// Whether a renderer should treat the surface as a mirror: mean slopes are below 1e-3.
     #[getter]
     fn is_effectively_smooth<'py>(&self, py: Python<'py>) -> PyResult<Any<'py>> {
-        let Kind::Family(all) = &self.kind else {
-            let smooth = self.one()?.is_effectively_smooth();
-            return Ok(PyBool::new(py, smooth).to_owned().into_any());
-        };
-        let lobes = all.surface.at(|sigma, gamma| all.lobe(sigma, gamma));
-        each(py, lobes, Cost::Lookup, |lobe| [f32::from(u8::from(lobe.is_effectively_smooth()))])?
-            .rich_compare(0, CompareOp::Ne)
+        match &self.kind {
+            Kind::Family(all) => {
+                let lobes = all.surface.at(|sigma, gamma| all.lobe(sigma, gamma));
+                flags(py, lobes, |lobe| lobe.is_effectively_smooth())
+            }
+            _ => flags(py, One(self.one()?), Lobe::is_effectively_smooth),
+        }
     }
 
     /// A call of a method of the tables, which go along unless they are those built in.

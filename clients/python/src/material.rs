@@ -5,15 +5,15 @@ use std::sync::Arc;
 use microfacet_sampler::albedo::FamilyAlbedo;
 use microfacet_sampler::lobe::FamilyLobe;
 use microfacet_sampler::{
-    AnyBsdf, BsdfSettings, Compensation, ConductorFresnel, Dielectric, DielectricAt,
-    FamilyDielectric, Masking,
+    AnyBsdf, BsdfSettings, Compensation, Conductor, ConductorFresnel, Dielectric, DielectricAt,
+    FamilyDielectric, Masking, Plastic,
 };
 use pyo3::prelude::*;
 
-use crate::lobe::round_sigma;
-use crate::set::Set;
-use crate::surface::Lobes;
-use crate::words::{refused, unbound};
+use crate::distribution::Kind;
+use crate::lobe::PyLobe;
+use crate::surface::{Lobes, round_sigma};
+use crate::words::{Form, refused, unbound};
 
 /// A material.
 pub(crate) enum Material {
@@ -25,17 +25,16 @@ pub(crate) enum Material {
         Option<(Arc<FamilyAlbedo>, Compensation)>,
     ),
     Dielectric(Arc<Lobes>, f64, Masking),
-    Interface(Arc<Lobes>, Arc<FamilyDielectric>, Compensation),
-    Plastic(Arc<Lobes>, Arc<FamilyDielectric>, Compensation, [f32; 3]),
+    Interface(Arc<Lobes>, Box<FamilyDielectric>, Compensation),
+    Plastic(Arc<Lobes>, Box<FamilyDielectric>, Compensation, [f32; 3]),
 }
 
 /// Calls a function of BSDFs, an argument as others.
 macro_rules! of {
     ($material:expr, $all:ident => $call:expr) => {{
         use microfacet_sampler::{Conductor, Dielectric, Plastic};
-
-        use crate::lobe::albedo_at;
-        use crate::material::{interface_at, single};
+        use $crate::lobe::albedo_at;
+        use $crate::material::{interface_at, single};
         match $material {
             Material::One(bsdf) => {
                 let $all = One(&**bsdf);
@@ -86,69 +85,50 @@ impl Material {
     }
 
     pub(crate) fn conductor(
-        lobes: &Arc<Lobes>,
-        set: &Set,
+        lobe: &PyLobe,
         fresnel: ConductorFresnel,
-        masking: Masking,
-        compensation: Compensation,
-        may_stand_in: bool,
+        form: &Form,
     ) -> PyResult<Self> {
-        let returned = match compensation {
-            Compensation::None => None,
-            _ => Some((lobes.albedo(set, masking, may_stand_in)?, compensation)),
+        let Kind::Family(lobes) = &lobe.kind else {
+            let bsdf = Conductor::new(lobe.one()?.clone(), fresnel, form.settings(&lobe.set));
+            return bsdf.map(Self::of).map_err(unbound);
         };
-        Ok(Self::Conductor(Arc::clone(lobes), Box::new(fresnel), masking, returned))
+        let returned = match form.compensation {
+            Compensation::None => None,
+            compensation => {
+                Some((lobes.albedo(&lobe.set, form.masking, form.may_stand_in)?, compensation))
+            }
+        };
+        Ok(Self::Conductor(Arc::clone(lobes), Box::new(fresnel), form.masking, returned))
     }
 
-    pub(crate) fn dielectric(
-        lobes: &Arc<Lobes>,
-        set: &Set,
-        eta: f64,
-        masking: Masking,
-        compensation: Compensation,
-        may_stand_in: bool,
-    ) -> PyResult<Self> {
-        if compensation == Compensation::None {
-            let probe = Dielectric::new(lobes.lobe([1.0; 2], 2.0), eta, BsdfSettings::new());
-            probe.map_err(unbound)?;
-            return Ok(Self::Dielectric(Arc::clone(lobes), eta, masking));
+    pub(crate) fn dielectric(lobe: &PyLobe, eta: f64, form: &Form) -> PyResult<Self> {
+        let Kind::Family(lobes) = &lobe.kind else {
+            let bsdf = Dielectric::new(lobe.one()?.clone(), eta, form.settings(&lobe.set));
+            return bsdf.map(Self::of).map_err(unbound);
+        };
+        if form.compensation == Compensation::None {
+            // Of any lobe, since it is the index that may be refused.
+            let any = lobes.lobe([1.0; 2], 2.0);
+            Dielectric::new(any, eta, BsdfSettings::new()).map_err(unbound)?;
+            return Ok(Self::Dielectric(Arc::clone(lobes), eta, form.masking));
         }
-        let interface = interface(lobes, set, eta, masking, may_stand_in)?;
-        Ok(Self::Interface(Arc::clone(lobes), interface, compensation))
+        let interface = Box::new(lobes.interface(&lobe.set, eta, form)?);
+        Ok(Self::Interface(Arc::clone(lobes), interface, form.compensation))
     }
 
-    pub(crate) fn plastic(
-        lobes: &Arc<Lobes>,
-        set: &Set,
-        eta: f64,
-        base: [f32; 3],
-        masking: Masking,
-        compensation: Compensation,
-        may_stand_in: bool,
-    ) -> PyResult<Self> {
+    pub(crate) fn plastic(lobe: &PyLobe, eta: f64, base: [f32; 3], form: &Form) -> PyResult<Self> {
+        let Kind::Family(lobes) = &lobe.kind else {
+            let bsdf = Plastic::new(lobe.one()?.clone(), eta, base, form.settings(&lobe.set));
+            return bsdf.map(Self::of).map_err(unbound);
+        };
+        // What is made at a hit is clamped.
         if base.iter().any(|base| !(0.0..=1.0).contains(base)) {
             return Err(refused(format!("base = {base:?} must lie in [0, 1]")));
         }
-        let interface = interface(lobes, set, eta, masking, may_stand_in)?;
-        Ok(Self::Plastic(Arc::clone(lobes), interface, compensation, base))
+        let interface = Box::new(lobes.interface(&lobe.set, eta, form)?);
+        Ok(Self::Plastic(Arc::clone(lobes), interface, form.compensation, base))
     }
-}
-
-/// The albedos of interfaces of an index, where the tables have them for all lobes.
-fn interface(
-    lobes: &Lobes,
-    set: &Set,
-    eta: f64,
-    masking: Masking,
-    may_stand_in: bool,
-) -> PyResult<Arc<FamilyDielectric>> {
-    if !(may_stand_in || lobes.surface.is_round()) {
-        return Err(refused(
-            "tables have albedos of round dielectrics alone: stand_in=True takes those of \
-             sqrt(sigma_x sigma_y)",
-        ));
-    }
-    set.family_dielectric(eta, masking).map(Arc::new).map_err(unbound)
 }
 
 /// A dielectric of one bounce, of an index that was checked.
@@ -167,5 +147,5 @@ pub(crate) fn interface_at(
     sigma: [f64; 2],
     gamma: f64,
 ) -> DielectricAt<'_> {
-    albedo.at(round_sigma(sigma), gamma as f32)
+    albedo.at(round_sigma(sigma) as f32, gamma as f32)
 }

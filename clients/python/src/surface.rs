@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use microfacet_sampler::albedo::FamilyAlbedo;
 use microfacet_sampler::lobe::{FamilyLobe, Roughness};
-use microfacet_sampler::{Family, Ggx, Masking, Tables};
+use microfacet_sampler::{Family, FamilyDielectric, Ggx, Masking, Tables};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple};
@@ -14,7 +14,7 @@ use pyo3::types::{PyDict, PyList, PyTuple};
 use crate::arrays::{Any, Input, Kept};
 use crate::broadcast::{Argument, Chunks, Values, broadcast};
 use crate::set::Set;
-use crate::words::{self, refused};
+use crate::words::{self, Form, refused, unbound};
 
 /// Roughness along x and y, and shape, which broadcast.
 pub(crate) struct Surface {
@@ -84,11 +84,6 @@ impl Surface {
         self.gamma.items()
     }
 
-    /// The largest roughness along x.
-    pub(crate) fn largest(&self) -> f64 {
-        self.sigma[0].items().fold(0.0, f64::max)
-    }
-
     /// Raises ValueError for the first lobe that the tables do not serve.
     pub(crate) fn check(&self, tables: &Tables, family: &Family) -> PyResult<()> {
         self.check_all(|sigma, _| Ggx::new(sigma))?;
@@ -114,6 +109,26 @@ impl Surface {
             Some(why) => Err(refused(why)),
             None => Ok(()),
         }
+    }
+
+    /// Raises ValueError where a table, which is over ranges, lacks the albedo of a lobe: lookups
+    /// would take the nearest that it has. `of` looks for that of a round lobe.
+    fn check_albedos<T, E: Display>(&self, of: impl Fn(f64, f64) -> Result<T, E>) -> PyResult<()> {
+        let [x, y] = &self.sigma;
+        let sigmas = match x.batch() == y.batch() {
+            true => ends(x.items().zip(y.items()).map(|(x, y)| round_sigma([x, y]))),
+            // Each of one may meet each of the other.
+            false => ends(x.items())
+                .zip(ends(y.items()))
+                .map(|(x, y)| [0, 1].map(|end| round_sigma([x[end], y[end]]))),
+        };
+        let (Some(sigmas), Some(gammas)) = (sigmas, ends(self.gammas())) else { return Ok(()) };
+        for (sigma, gamma) in
+            sigmas.into_iter().flat_map(|sigma| gammas.map(|gamma| (sigma, gamma)))
+        {
+            of(sigma, gamma).map_err(refused)?;
+        }
+        Ok(())
     }
 
     /// Roughness and shape of each lobe.
@@ -160,6 +175,19 @@ impl Surface {
             None => format!("StudentT of shape {}", crate::broadcast::shown(&self.batch)),
         }
     }
+}
+
+/// The smallest and the largest of some numbers.
+fn ends(numbers: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
+    numbers.fold(None, |ends, x| {
+        let [low, high] = ends.unwrap_or([x, x]);
+        Some([low.min(x), high.max(x)])
+    })
+}
+
+/// The roughness of the round lobe that stands in for one of roughness σx, σy.
+pub(crate) fn round_sigma([x, y]: [f64; 2]) -> f64 {
+    if x == y { x } else { (x * y).sqrt() }
 }
 
 /// Roughness and shape in single precision.
@@ -236,19 +264,28 @@ impl Lobes {
         masking: Masking,
         may_stand_in: bool,
     ) -> PyResult<Arc<FamilyAlbedo>> {
-        if !(may_stand_in || self.surface.is_round()) {
-            return Err(refused(
-                "lobes of arrays have albedos of round lobes alone: stand_in=True takes that of \
-                 sqrt(sigma_x sigma_y)",
-            ));
-        }
-        let (largest, last) = (self.surface.largest(), microfacet_tables::SIGMA_MAX);
-        if self.surface.is_round() && largest > last {
-            return Err(refused(format!(
-                "sigma = {largest} has no albedo: tables of albedos end at {last}"
-            )));
-        }
+        self.check_round(may_stand_in)?;
+        self.surface.check_albedos(|sigma, gamma| set.albedo(sigma, gamma, masking))?;
         set.albedos(masking).map_err(refused)
+    }
+
+    /// The albedos of their interfaces of an index of refraction.
+    pub(crate) fn interface(&self, set: &Set, eta: f64, form: &Form) -> PyResult<FamilyDielectric> {
+        self.check_round(form.may_stand_in)?;
+        let family = set.family_dielectric(eta, form.masking).map_err(unbound)?;
+        let of = |sigma, gamma| set.dielectric_albedo(sigma, gamma, eta, form.masking);
+        self.surface.check_albedos(of)?;
+        Ok(family)
+    }
+
+    fn check_round(&self, may_stand_in: bool) -> PyResult<()> {
+        if may_stand_in || self.surface.is_round() {
+            return Ok(());
+        }
+        Err(refused(
+            "lobes of arrays have albedos of round lobes alone: stand_in=True takes that of \
+             sqrt(sigma_x sigma_y)",
+        ))
     }
 
     /// The lobe of one item.

@@ -31,11 +31,6 @@ pub(crate) fn unbound(why: BindError) -> PyErr {
     refused(words.iter().fold(why.to_string(), |why, (rust, python)| why.replace(rust, python)))
 }
 
-/// The text of an exception.
-pub(crate) fn text(py: Python<'_>, why: &PyErr) -> String {
-    why.value(py).to_string()
-}
-
 /// Names that other renderers have for arguments of ours, with what to write.
 const ELSEWHERE: [(&str, &str); 15] = [
     ("alpha", "sigma is what others call alpha: sigma = alpha"),
@@ -79,11 +74,16 @@ pub(crate) fn metal(py: Python<'_>, name: &str) -> PyResult<Metal> {
         // As people write it: Gold, AU.
         let lower = name.trim().to_lowercase();
         let names = Metal::ALL.map(Metal::name);
-        let close = py.import("difflib")?.call_method1("get_close_matches", (lower, names, 1))?;
-        let hint = match close.get_item(0) {
-            Ok(close) => format!("; did you mean \"{close}\"?"),
-            Err(_) => String::new(),
+        let symbol = Metal::ALL.map(Metal::symbol).into_iter().find(|s| s.to_lowercase() == lower);
+        let close = match symbol {
+            Some(symbol) => vec![symbol.to_owned()],
+            None => {
+                let difflib = py.import("difflib")?;
+                difflib.call_method1("get_close_matches", (lower, names, 1))?.extract()?
+            }
         };
+        let hint =
+            close.first().map_or(String::new(), |close| format!("; did you mean \"{close}\"?"));
         Err(refused(format!("metal \"{name}\": {why}{hint}")))
     })
 }
@@ -168,17 +168,30 @@ pub(crate) fn compensation(word: &str) -> PyResult<Compensation> {
     one_of("compensation", word, &words)
 }
 
-/// How a BSDF is made.
-pub(crate) fn settings<'a>(
-    masking_word: &str,
-    compensation_word: &str,
-    tables: &'a Tables,
-    may_stand_in: bool,
-) -> PyResult<BsdfSettings<'a>> {
-    Ok(BsdfSettings::new()
-        .with_masking(masking(masking_word)?)
-        .compensated(compensation(compensation_word)?, tables)
-        .with_stand_in(stand_in(may_stand_in)))
+/// Masking and compensation of a BSDF.
+pub(crate) struct Form {
+    pub(crate) masking: Masking,
+    pub(crate) compensation: Compensation,
+    pub(crate) may_stand_in: bool,
+}
+
+impl Form {
+    pub(crate) fn new(
+        masking_word: &str,
+        compensation_word: &str,
+        may_stand_in: bool,
+    ) -> PyResult<Self> {
+        let (masking, compensation) = (masking(masking_word)?, compensation(compensation_word)?);
+        Ok(Self { masking, compensation, may_stand_in })
+    }
+
+    /// How a BSDF is made of one lobe.
+    pub(crate) fn settings<'a>(&self, tables: &'a Tables) -> BsdfSettings<'a> {
+        BsdfSettings::new()
+            .with_masking(self.masking)
+            .compensated(self.compensation, tables)
+            .with_stand_in(stand_in(self.may_stand_in))
+    }
 }
 
 pub(crate) fn transport(word: &str) -> PyResult<Transport> {

@@ -218,7 +218,11 @@ def test_a_white_furnace_of_many_is_white():
         (lambda: exact.StudentT(0.3, np.array([2, 1.5])), ["gamma = 1.5", "(1.5, inf]"]),
         (lambda: microfacet.StudentT(0.3, 2, sigma_x=0.2), ["either it or them"]),
         (lambda: microfacet.StudentT(gamma=2, sigma_x=0.2), ["sigma_x and sigma_y"]),
-        (lambda: microfacet.StudentT(np.array([4.0]), 2).albedo(0.5), ["sigma = 4", "end at 3"]),
+        (lambda: microfacet.StudentT(np.array([1, 4.0]), 2).albedo(0.5), ["sigma = 4", "3]"]),
+        (
+            lambda: microfacet.StudentT((np.array([1, 40.0]), 1.0), 2).albedo(V, stand_in=True),
+            ["sigma = 6.3", "3]"],
+        ),
         (
             lambda: microfacet.Dielectric(
                 microfacet.StudentT(np.array([0.4]), 2), 1.5, compensation="turquin"
@@ -233,6 +237,15 @@ def test_errors_name_what_is_wrong(call, words):
         call()
     for word in words:
         assert word in str(why.value), why.value
+
+
+@pytest.mark.parametrize("material", [microfacet.Dielectric, microfacet.Plastic])
+def test_albedos_beyond_the_tables_are_refused(material, ranges):
+    base = [0.5] if material is microfacet.Plastic else []
+    for sigma, gamma, word in [([0.2, 0.6], 2.5, "sigma 0.6,"), ([0.2, 0.3], 2.1, "2.1")]:
+        lobe = microfacet.StudentT(np.array(sigma), gamma)
+        with pytest.raises(ValueError, match=word):
+            material(ranges.student_t(lobe.sigma[0], gamma), 1.5, *base, compensation="turquin")
 
 
 def lobes():

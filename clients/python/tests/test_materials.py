@@ -101,6 +101,11 @@ def test_lobes_say_what_they_are():
             lambda: microfacet.Conductor(microfacet.StudentT(0.1, 2), metal="Aluminum foil"),
             ['did you mean "aluminium"?'],
         ),
+        (
+            lambda: microfacet.Conductor(microfacet.StudentT(0.1, 2), metal="AU"),
+            ['did you mean "Au"?'],
+        ),
+        (lambda: microfacet.StudentT(0.1, "ggx"), ["gamma: could not convert", "ggx"]),
         (lambda: microfacet.Conductor(microfacet.StudentT(0.1, 2), f0=1.5), ["f0 = 1.5", "[0, 1]"]),
         (lambda: microfacet.Conductor(microfacet.StudentT(0.1, 2), eta=1.5), ["eta with k"]),
         (lambda: microfacet.Dielectric(microfacet.StudentT(0.1, 2), -1), ["eta = -1", "[0.001, 1000]"]),
