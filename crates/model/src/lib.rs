@@ -12,6 +12,7 @@
 //! | --- | --- |
 //! | evaluate and sample a lobe | [`MicrofacetDistribution`] of [`StudentT`], [`Ellipsoid`] and [`classic::Radial`] |
 //! | draw visible normals without inverting a CDF | [`StudentT::sample_visible_by_rejection`] |
+//! | draw pseudo-visible normals, in closed form | [`StudentT::sample_pseudo_visible_normal`] |
 //! | integrate an albedo | [`AlbedoIntegrator`], [`classic::RadialAlbedo`] |
 //! | scatter more than once | [`StudentT::walk`] |
 //! | reflect at conductors and dielectrics | [`fresnel`] |
@@ -65,6 +66,7 @@ mod ndf;
 mod panels;
 mod paper;
 mod piecewise;
+mod pseudo;
 mod quadrature;
 mod rejection;
 mod shape;

@@ -24,9 +24,13 @@ impl StudentT {
     /// A normal distributed as D(m)(m·n) from u ∈ [0, 1)² (eq. 16–17; if anisotropic eq. 19–20, in
     /// the quadrant of 2πu₂).
     pub fn sample_ndf(&self, u: [f64; 2]) -> DVec3 {
-        let r = self.shape().slope_radius(u[0]);
         let phi = 2.0 * PI * u[1];
-        let (x, y) = (self.sigma_x() * libm::cos(phi), self.sigma_y() * libm::sin(phi));
+        self.normal_of_slope(self.shape().slope_radius(u[0]), [libm::cos(phi), libm::sin(phi)])
+    }
+
+    /// The normal of a unit slope of length r ∈ [0, ∞] in a direction of the tangent plane.
+    pub(crate) fn normal_of_slope(&self, r: f64, [cos, sin]: [f64; 2]) -> DVec3 {
+        let (x, y) = (self.sigma_x() * cos, self.sigma_y() * sin);
         // At the horizon r² would overflow in the normalisation.
         let m = if r > 1e150 { DVec3::new(x, y, 1.0 / r) } else { DVec3::new(r * x, r * y, 1.0) };
         above_horizon(m)

@@ -49,6 +49,9 @@ impl StudentT {
 
 /// A slope of the NDF turned towards the viewer: always if beyond the silhouette, with probability
 /// (1 + |x|/z)/2 if within it.
+///
+/// These are [pseudo-visible](crate::pseudo) slopes. A number of its own for the side takes less
+/// time than the equation that draws the same from two.
 fn flipped_slope(shape: &Shape, z: f64, uniform: &mut impl FnMut() -> f64) -> (f64, f64) {
     let r = shape.slope_radius(uniform());
     let phi = 2.0 * PI * uniform();

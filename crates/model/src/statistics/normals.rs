@@ -49,7 +49,8 @@ pub fn test_visible_normals(
     mut draw: impl FnMut([f32; 2]) -> Vec3,
 ) -> NormalsTest {
     let grid = LobeGrid::new(truth, v);
-    let world = WorldGrid::new(truth, v);
+    let inverse_area = truth.inverse_area(v);
+    let world = WorldGrid::new(truth, |m| v.dot(m).max(0.0) * truth.d(m) * inverse_area);
     let mut lobe_counts = vec![0_u64; grid.along.len() * grid.across.len()];
     let mut world_counts = vec![0_u64; WORLD[0] * WORLD[1]];
     let mut ks_counts = vec![0_u64; grid.ks.len()];
@@ -64,9 +65,6 @@ pub fn test_visible_normals(
     let n = samples as f64;
     let row = |a: &f64| grid.across_share.iter().map(|b| a * b * n).collect::<Vec<f64>>();
     let lobe_expected: Vec<f64> = grid.along_share.iter().flat_map(row).collect();
-    // The quadrature can miss a cell of which only a corner faces the view: such a cell is pooled,
-    // not taken as impossible.
-    let world_expected: Vec<f64> = world.share.iter().map(|share| share.max(1e-12) * n).collect();
     let mut below = 0;
     let ks = ks_counts.iter().zip(&grid.ks_cdf).fold(0.0, |worst: f64, (&count, cdf)| {
         below += count;
@@ -74,9 +72,29 @@ pub fn test_visible_normals(
     });
     NormalsTest {
         lobe: chi_square(&lobe_counts, &lobe_expected),
-        world: chi_square(&world_counts, &world_expected),
+        world: world.test(&world_counts, samples),
         ks,
     }
+}
+
+/// Draws `samples` normals with `draw(u)`, u uniform in [0, 1)², and tests them against the density
+/// `pdf` by a χ² over the hemisphere of normals in the tangent frame.
+///
+/// The cells are those of a lobe, such that each holds as many normals of D.
+pub fn test_normals(
+    lobe: &StudentT,
+    pdf: impl Fn(DVec3) -> f64,
+    samples: usize,
+    seed: u64,
+    mut draw: impl FnMut([f32; 2]) -> Vec3,
+) -> ChiSquare {
+    let world = WorldGrid::new(lobe, pdf);
+    let mut counts = vec![0_u64; WORLD[0] * WORLD[1]];
+    let mut random = StdRng::seed_from_u64(seed);
+    for _ in 0..samples {
+        counts[world.cell(draw([random.random(), random.random()]).as_dvec3())] += 1;
+    }
+    world.test(&counts, samples)
 }
 
 /// Index of the first upper edge ≥ x; the last edge is ∞.
@@ -168,18 +186,18 @@ struct WorldGrid {
 }
 
 impl WorldGrid {
-    fn new(truth: &StudentT, v: DVec3) -> Self {
+    fn new(truth: &StudentT, pdf: impl Fn(DVec3) -> f64) -> Self {
         let sigma = [truth.sigma_x(), truth.sigma_y()];
         let rings: Vec<f64> = (1..WORLD[0])
             .map(|i| truth.shape().slope_radius(i as f64 / WORLD[0] as f64))
             .chain([f64::INFINITY])
             .collect();
-        let scale = truth.inverse_area(v) * sigma[0] * sigma[1];
+        let scale = sigma[0] * sigma[1];
         let density = |r: f64, psi: f64| {
             let (x, y) = (sigma[0] * r * libm::cos(psi), sigma[1] * r * libm::sin(psi));
             let m = DVec3::new(x, y, 1.0).normalize();
             // dm = cos³θ dx̃ dỹ in world slopes, which are σ times unit slopes.
-            v.dot(m).max(0.0) * truth.d(m) * scale * (m.z * m.z * m.z) * r
+            pdf(m) * scale * (m.z * m.z * m.z) * r
         };
         let step = 2.0 * std::f64::consts::PI / WORLD[1] as f64;
         let mut share = Vec::with_capacity(WORLD[0] * WORLD[1]);
@@ -206,6 +224,14 @@ impl WorldGrid {
             share[last] = 1.0 - inside;
         }
         Self { sigma, rings, share, whole_last_ring }
+    }
+
+    fn test(&self, counts: &[u64], samples: usize) -> ChiSquare {
+        // The quadrature can miss a cell of which only a corner faces the view: such a cell is
+        // pooled, not taken as impossible.
+        let expected: Vec<f64> =
+            self.share.iter().map(|share| share.max(1e-12) * samples as f64).collect();
+        chi_square(counts, &expected)
     }
 
     fn cell(&self, m: DVec3) -> usize {
