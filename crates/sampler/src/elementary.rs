@@ -12,14 +12,28 @@ use wide::{bytemuck, f32x4, i32x4};
 /// The sine and the cosine of 2πu for u ∈ [0, 1], to 2e-7 absolute, exact where they are 0.
 #[inline(always)]
 pub(crate) fn turn(u: f32) -> [f32; 2] {
-    // Of x ∈ [−¼, ¼]; the polynomial errs by 7e-9.
-    let sine = |x: f32| {
-        let y = x * x;
-        x * (TAU + y * (-41.341_68 + y * (81.602_475 + y * (-76.581_17 + y * 39.759_827))))
-    };
     let x = 0.5 - u;
     let quarter = x.abs() - 0.25;
     [sine((0.25 - quarter.abs()).copysign(x)), sine(quarter)]
+}
+
+/// The same of u ∈ [0, ¼], with the digits of small sines.
+#[inline(always)]
+pub(crate) fn quarter_turn(u: f32) -> [f32; 2] {
+    [sine(u), sine(0.25 - u)]
+}
+
+/// The sine of 2πx for x ∈ [−¼, ¼]; the polynomial errs by 7e-9.
+#[inline(always)]
+fn sine(x: f32) -> f32 {
+    let y = x * x;
+    x * (TAU + y * (-41.341_68 + y * (81.602_475 + y * (-76.581_17 + y * 39.759_827))))
+}
+
+/// scale·(eˢʸ − 1)/s for s, y ≥ 0; scale·y in the limit s = 0.
+#[inline(always)]
+pub(crate) fn scaled_expm1_over(s: f32, y: f32, scale: f32) -> f32 {
+    if s * y < 1e-4 { scale * y * (1.0 + 0.5 * s * y) } else { scale * libm::expm1f(s * y) / s }
 }
 
 /// log₂ of positive normal numbers, to 1e-7 of the logarithm (so also next to 1) and 1 ulp of its
@@ -161,6 +175,12 @@ mod tests {
             let (sin, cos) = libm::sincos(core::f64::consts::TAU * f64::from(u));
             let [s, c] = turn(u).map(f64::from);
             assert!((s - sin).abs() < 2e-7 && (c - cos).abs() < 2e-7, "{u}: {s}, {c}");
+        }
+        for i in 0..=1000 {
+            let u = 0.25 * libm::exp2f(-0.1 * i as f32);
+            let [s, c] = quarter_turn(u).map(f64::from);
+            let (sin, cos) = libm::sincos(core::f64::consts::TAU * f64::from(u));
+            assert!((s / sin - 1.0).abs() < 3e-7 && (c - cos).abs() < 2e-7, "{u}: {s}, {c}");
         }
         assert_eq!([0.0, 0.5, 1.0].map(|u| turn(u)[0]), [0.0; 3]);
         assert_eq!([0.25, 0.75].map(|u| turn(u)[1]), [0.0; 2]);

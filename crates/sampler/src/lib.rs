@@ -92,6 +92,7 @@
 //! | evaluate and sample a material | [`Conductor`], [`Dielectric`], [`Plastic`]: [`Bsdf`]; [`Tables::bsdf`] by name |
 //! | get a lobe | [`Tables::student_t`], [`Tables::ellipsoid`], [`Tables::material`] by name, [`Ggx`] without tables |
 //! | evaluate and sample a lobe | [`MicrofacetDistribution`]: D, G1, visible normals; [`lobe::Reflecting`]: reflection off them; [`lobe::Batch`]: whole slices |
+//! | draw normals without tables, whatever γ | [`lobe::PseudoVisible`] |
 //! | lose fewer samples below the horizon | [`StudentT::bounded`] |
 //! | compensate multiple scattering yourself | [`Tables::albedo`], [`albedo::Albedo`] |
 //! | take σ from a texture | [`StudentT::with_roughness`], also of a bounded lobe; [`Ellipsoid::with_skew`] |
@@ -149,8 +150,8 @@ pub use tables::Tables;
 pub mod lobe {
     pub use crate::error::BatchError;
     pub use crate::material::{
-        Batch, Bounded, BoundedRef, BoundedView, EllipsoidRef, Facet, FamilyLobe, LobeKey, Radial,
-        Reflecting, Smooth, StudentTRef, Tabulated,
+        Batch, Bounded, BoundedRef, BoundedView, EllipsoidRef, Facet, FamilyLobe, LobeKey,
+        PseudoVisible, Radial, Reflecting, Smooth, StudentTRef, Tabulated,
     };
     pub use microfacet_core::{Roughness, SkewError};
 }

@@ -16,7 +16,7 @@ use microfacet_tables::axis::hermite::{Cell, cubic_cells, horner, locate};
 
 use super::slices::Slices;
 use super::surface::{Shape, Stretched};
-use crate::elementary::{exp2, log2};
+use crate::elementary::{exp2, log2, scaled_expm1_over};
 
 /// Up to this a the excess is a difference of values from the shadowing table, which loses digits
 /// beyond it.
@@ -93,14 +93,7 @@ impl<'a> SlopeBelowHorizon<'a> {
         let base = 1.0 + s * a * a;
         // (1/s + a²)(e^(y/k) − 1) with 1/k = 2s/(2−s); y·2/(2−s) in the limit s = 0.
         let rate = 2.0 / (2.0 - s);
-        let grow = |y: f32| {
-            let y = rate * y;
-            if s * y < 1e-4 {
-                base * y * (1.0 + 0.5 * s * y)
-            } else {
-                base * libm::expm1f(s * y) / s
-            }
-        };
+        let grow = |y: f32| scaled_expm1_over(s, rate * y, base);
         // 1 − a/x ≤ min(1, b y).
         let b = 0.5 * rate * base / (a * a);
         let mut first = unit(u);

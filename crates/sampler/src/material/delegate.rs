@@ -78,6 +78,18 @@ macro_rules! forward {
             }
         }
     };
+    (@PseudoVisible #[$inline:meta] $type:ty, $to:ident) => {
+        impl PseudoVisible for $type {
+            #[$inline]
+            fn sample_pseudo_visible_normal(
+                &self,
+                v: impl Into<[f32; 3]>,
+                u: [f32; 2],
+            ) -> [f32; 3] {
+                $to!(self, lobe => lobe.sample_pseudo_visible_normal(v, u))
+            }
+        }
+    };
     (@Tabulated #[$inline:meta] $type:ty, $to:ident) => {
         impl Tabulated for $type {
             fn table_pdf(&self, v: impl Into<[f32; 3]>, m: impl Into<[f32; 3]>) -> f32 {

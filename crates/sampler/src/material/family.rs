@@ -19,6 +19,7 @@ use super::delegate::{forward, surface};
 use super::distribution::{Facet, MicrofacetDistribution};
 use super::family_part::{AtShape, Part};
 use super::key::{LobeKey, has_pole};
+use super::pseudo::PseudoVisible;
 use super::reflecting::Reflecting;
 use super::roughness::clamped;
 use super::surface::Surface;
@@ -173,7 +174,7 @@ impl<'a> FamilyLobe<'a> {
     }
 }
 
-forward!(#[inline(always)] FamilyLobe<'_>, surface: MicrofacetDistribution, Reflecting, Batch);
+forward!(#[inline(always)] FamilyLobe<'_>, surface: MicrofacetDistribution, Reflecting, PseudoVisible, Batch);
 
 impl Tabulated for FamilyLobe<'_> {
     fn key(&self) -> LobeKey {

@@ -10,6 +10,7 @@ use super::batch::Batch;
 use super::distribution::{Facet, MicrofacetDistribution, SMOOTH, visible_density};
 use super::horizon::{above_horizon, face};
 use super::key::LobeKey;
+use super::pseudo::{LAST, PseudoVisible, normal};
 use super::reflecting::Reflecting;
 use super::roughness::checked;
 use super::surface::{LONG, LONGEST, SHORT};
@@ -17,9 +18,6 @@ use super::tabulated::Tabulated;
 use crate::elementary::turn;
 use crate::error::MaterialError;
 use crate::vector::vec3;
-
-/// The smallest 1 − u₁: keeps a normal off the horizon, where its length may vanish.
-const LAST: f32 = 1.0 / 16_777_216.0;
 
 /// GGX (Trowbridge–Reitz), the member γ = 2 of the family, from closed forms alone, without tables.
 ///
@@ -151,6 +149,15 @@ impl Reflecting for Ggx {
     #[inline(always)]
     fn sample_reflecting_normal(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> ([f32; 3], f32) {
         (self.along(vec3(v), u).to_array(), 1.0)
+    }
+}
+
+impl PseudoVisible for Ggx {
+    #[inline]
+    fn sample_pseudo_visible_normal(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> [f32; 3] {
+        let first = unit(u[0]);
+        let r = sqrt(first / (1.0 - first).max(LAST));
+        normal(self.alpha(), vec3(v), r, u[1]).to_array()
     }
 }
 

@@ -8,8 +8,9 @@
 //! [`normals`] is D in closed form, with a [`power_table`] for its power. [`table_pdf`] is the
 //! density of what is drawn, and [`bounded`] leaves out normals that cannot reflect. [`ellipsoid`]
 //! transforms directions by a [`matrix`] to a Student-t, and draws by rejection for views
-//! [`below_horizon`]; [`radial`] has tables of its own, and [`ggx`] and the [`smooth`] surface need
-//! none. [`key`] identifies a lobe to albedo tables, and [`shape`] is what exports write of one.
+//! [`below_horizon`]; [`radial`] has tables of its own, and [`ggx`], the [`smooth`] surface and
+//! [`pseudo`]-visible normals need none. [`key`] identifies a lobe to albedo tables, and [`shape`]
+//! is what exports write of one.
 
 mod batch;
 mod below_horizon;
@@ -30,6 +31,7 @@ mod lobe;
 mod matrix;
 mod normals;
 mod power_table;
+mod pseudo;
 mod radial;
 mod reflecting;
 mod roughness;
@@ -50,6 +52,7 @@ pub use family::{Family, FamilyLobe};
 pub use ggx::Ggx;
 pub use key::LobeKey;
 pub use lobe::Lobe;
+pub use pseudo::PseudoVisible;
 pub use radial::Radial;
 pub(crate) use radial::RadialError;
 pub use reflecting::Reflecting;

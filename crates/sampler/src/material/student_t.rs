@@ -21,6 +21,7 @@ use super::delegate::{by_ref, forward, surface};
 use super::distribution::{Facet, MicrofacetDistribution, is_hidden};
 use super::horizon::above_horizon;
 use super::key::{LobeKey, has_pole};
+use super::pseudo::PseudoVisible;
 use super::reflecting::Reflecting;
 use super::roughness::{checked, clamped};
 use super::slices::Slices;
@@ -219,9 +220,9 @@ impl Surface<&Slices> {
     }
 }
 
-forward!(#[inline(always)] StudentT, surface: MicrofacetDistribution, Reflecting, Batch);
+forward!(#[inline(always)] StudentT, surface: MicrofacetDistribution, Reflecting, PseudoVisible, Batch);
 forward!(#[inline(always)] StudentT, by_ref: Tabulated);
-forward!(#[inline(always)] StudentTRef<'_>, surface: MicrofacetDistribution, Reflecting, Batch);
+forward!(#[inline(always)] StudentTRef<'_>, surface: MicrofacetDistribution, Reflecting, PseudoVisible, Batch);
 
 impl Tabulated for StudentTRef<'_> {
     /// The density with which the sampler draws `m`, the Jacobian of its map.
