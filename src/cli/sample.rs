@@ -45,7 +45,7 @@ pub(super) struct Args {
     /// Seed of everything random.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = values::seed)]
     seed: u64,
-    /// How visible normals are drawn; also decides the density that is written.
+    /// Which normals of the view are drawn, and how; also decides the density that is written.
     #[arg(long, value_enum, default_value = "table")]
     method: Method,
     /// Draw normals of D, eq. 16-17 and 19-20, with density D(m) (m.n), for which no view is
@@ -66,6 +66,8 @@ enum Method {
     Table,
     /// By the model's sampler, with the analytic density.
     Exact,
+    /// Normals of D brought to the viewer's side, pseudo-visible, with their density.
+    Pseudo,
 }
 
 /// Draws a normal, with its density.
@@ -92,17 +94,30 @@ fn source(args: &Args) -> Result<Draw> {
             }))
         }
         Method::Exact => {
-            ensure!(
-                args.tables.is_none(),
-                "--method exact draws without tables: drop --tables, or give --method table"
-            );
+            without_tables(args, "exact")?;
             let v = v.as_dvec3();
             Ok(Box::new(move |random| {
                 let m = truth.sample_visible_by_rejection(v, &mut || random.random());
                 (m.as_vec3(), truth.visible_normal_pdf(v, m) as f32)
             }))
         }
+        Method::Pseudo => {
+            without_tables(args, "pseudo")?;
+            let v = v.as_dvec3();
+            Ok(Box::new(move |random| {
+                let m = truth.sample_pseudo_visible_normal(v, [random.random(), random.random()]);
+                (m.as_vec3(), truth.pseudo_visible_normal_pdf(v, m) as f32)
+            }))
+        }
     }
+}
+
+fn without_tables(args: &Args, method: &str) -> Result<()> {
+    ensure!(
+        args.tables.is_none(),
+        "--method {method} draws without tables: drop --tables, or give --method table"
+    );
+    Ok(())
 }
 
 /// Writes a safetensors file. All normals precede all densities in it, so they are drawn twice

@@ -68,7 +68,9 @@ fn normals_of_d_need_no_view() {
 fn normals_are_written_as_the_library_would() {
     let desk = Desk::new(&[]);
     for count in [1, 7, 12345] {
-        for method in ["--theta 1", "--theta 1 --method exact", "--ndf"] {
+        for method in
+            ["--theta 1", "--theta 1 --method exact", "--theta 1 --method pseudo", "--ndf"]
+        {
             desk.ok(&format!("sample --sigma 0.3 --gamma 3 {method} --count {count} -o n"));
             let bytes = desk.read("n");
             let read = SafeTensors::deserialize(&bytes).unwrap();
