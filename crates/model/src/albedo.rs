@@ -52,6 +52,8 @@ pub struct AlbedoIntegrator {
     /// Asinh slope of the cut across the view, where tails are shorter: the share beyond w is less
     /// than cosh^(−2k−1) √s w.
     cut_across: f64,
+    /// Slopes across the view of skewed lobes.
+    across: SlopeTable,
 }
 
 /// The view and what depends on it alone.
@@ -101,6 +103,7 @@ impl AlbedoIntegrator {
     pub fn new(shape: Shape, tolerance: f64) -> Self {
         let tolerance = tolerance.clamp(1e-13, 1e-2);
         let cut = cut(&shape, tolerance, shape.gamma() - 1.5, 0.0, LARGEST_RAPIDITY);
+        let cut_across = self::cut(&shape, tolerance, shape.gamma() - 1.0, 0.0, f64::INFINITY);
         let smith = SmithTable::new(&shape, (CUT * tolerance).max(1e-13));
         Self {
             shape,
@@ -109,7 +112,8 @@ impl AlbedoIntegrator {
             rules: rules(),
             tolerance,
             cut,
-            cut_across: self::cut(&shape, tolerance, shape.gamma() - 1.0, 0.0, f64::INFINITY),
+            cut_across,
+            across: SlopeTable::across(&shape, cut_across),
         }
     }
 

@@ -209,9 +209,9 @@ fn of_albedos(spec: &AlbedoSpec) -> [f64; 2] {
             let views = if is_uneven { libm::log10(spec.tolerance / 1e-6) } else { 0.0 };
             [300.0 * tails, azimuths + views.clamp(0.0, 1.0)]
         }
-        // A table of σ = 0.3 and 0.1 (0.2 at γ = 3) tilted by 13° took 17 s at γ = ∞,
-        // 118 s at γ = 3 and 31 s at γ = 1.52, where fewer doublings were needed.
-        LobeForm::Ellipsoid => [1700.0 * (1.0 + 8.0 * s.min(0.5)), 1.5],
+        // Of the lobes of `tables/recipes/tilted-lobes.toml` a node at γ = 2 and 3 takes 2.5 to 3
+        // times as long as one at γ = ∞.
+        LobeForm::Ellipsoid => [1000.0 * (1.0 + 3.0 * s.min(0.5)), 1.5],
         LobeForm::Distribution => {
             let has_long_tails = lobe.distribution.as_ref().is_some_and(has_long_tails);
             [if has_long_tails { 600.0 } else { 200.0 }, 0.15]

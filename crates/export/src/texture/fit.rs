@@ -1,9 +1,11 @@
 //! Values of texels for which what a linear filter reads is closest to given values: weighted least
-//! squares, by conjugate gradients (Hestenes and Stiefel 1952,
-//! <https://doi.org/10.6028/jres.049.044>), whose weights follow the error until the largest is
-//! small (Lawson's algorithm; Rice and Usow 1968, *Mathematics of Computation* 22).
-
-use rayon::prelude::*;
+//! squares whose weights follow the error until the largest is small (Lawson's algorithm; Rice and
+//! Usow 1968, *Mathematics of Computation* 22).
+//!
+//! The matrix of the normal equations couples only texels that a filter reads together, so that it
+//! has few diagonals. It is summed over the points once for each set of weights, and then solved by
+//! conjugate gradients (Hestenes and Stiefel 1952, <https://doi.org/10.6028/jres.049.044>), which
+//! do not look at points any more.
 
 use super::axis::{AXES, TexelAxis};
 
@@ -15,10 +17,6 @@ const STEPS: usize = 120;
 const ENOUGH: f64 = 1e-18;
 /// Weight of points outside the certified domain; it determines texels that only they read.
 const LOOSE: f64 = 1e-4;
-/// Parts of the points that are summed each by a thread, and then in their order, so that sums are
-/// the same for any number of threads; and the fewest points of a part.
-const PARTS: usize = 16;
-const FEWEST: usize = 1024;
 
 /// The texels that a filter reads at a point: the first, and the shares of the next ones.
 #[derive(Clone, Copy, Debug)]
@@ -85,32 +83,6 @@ impl Filter {
         let shares = tap.shares.map(|share| (share * 256.0).round() / 256.0);
         self.read(values, Tap { shares, ..tap })
     }
-
-    /// Σ weight · of(point) over the points that read each texel.
-    fn scatter(
-        &self,
-        taps: &[Tap],
-        of: impl Fn(usize, Tap) -> f64 + Sync,
-        square: bool,
-    ) -> Vec<f64> {
-        let length = taps.len().div_ceil(PARTS).max(FEWEST);
-        let part = |(part, taps): (usize, &[Tap])| {
-            let mut sum = vec![0.0; self.texels];
-            for (i, &tap) in taps.iter().enumerate() {
-                let x = of(part * length + i, tap);
-                for (texel, weight) in self.corners(tap) {
-                    sum[texel] += if square { weight * weight * x } else { weight * x };
-                }
-            }
-            sum
-        };
-        let parts: Vec<Vec<f64>> = taps.par_chunks(length).enumerate().map(part).collect();
-        let mut all = vec![0.0; self.texels];
-        for part in parts {
-            all.iter_mut().zip(part).for_each(|(all, x)| *all += x);
-        }
-        all
-    }
 }
 
 /// A point that a texture is fitted to.
@@ -128,17 +100,22 @@ pub(super) fn fit(
     wanted: &[f64],
     values: Vec<f64>,
 ) -> Vec<f64> {
-    let taps: Vec<Tap> = targets.iter().map(|target| target.tap).collect();
     let weight = |target: &Target| if target.promised { 1.0 } else { LOOSE };
     let mut weights: Vec<f64> = targets.iter().map(weight).collect();
     let (mut best, mut least) = (values.clone(), f64::INFINITY);
     let mut values = values;
+    let missing = |values: &[f64]| -> Vec<f64> {
+        let pairs = targets.iter().zip(wanted);
+        pairs.map(|(target, wanted)| wanted - filter.read(values, target.tap)).collect()
+    };
+    let mut errors = missing(&values);
+    let mut equations = Equations::new(filter);
     for _ in 0..ROUNDS {
-        values = solve(filter, &taps, &weights, wanted, values);
-        let error = |(&tap, &wanted): (&Tap, &f64)| (filter.read(&values, tap) - wanted).abs();
-        let errors: Vec<f64> = taps.par_iter().zip(wanted).map(error).collect();
+        equations.sum(filter, targets, &weights, &errors);
+        equations.improve(&mut values);
+        errors = missing(&values);
         let counted = errors.iter().zip(targets).filter(|(_, target)| target.promised);
-        let largest = counted.map(|(&error, _)| error).fold(0.0, f64::max);
+        let largest = counted.map(|(error, _)| error.abs()).fold(0.0, f64::max);
         if largest < least {
             (best, least) = (values.clone(), largest);
         }
@@ -149,7 +126,7 @@ pub(super) fn fit(
         for ((weight, error), target) in weights.iter_mut().zip(&errors).zip(targets) {
             if target.promised {
                 // Never 0: such a weight could not grow again.
-                *weight *= error / largest + 1e-3;
+                *weight *= error.abs() / largest + 1e-3;
                 heaviest = heaviest.max(*weight);
             }
         }
@@ -162,44 +139,91 @@ pub(super) fn fit(
     best
 }
 
-/// Weighted least squares, from `values` on.
-fn solve(
-    filter: &Filter,
-    taps: &[Tap],
-    weights: &[f64],
-    wanted: &[f64],
-    mut values: Vec<f64>,
-) -> Vec<f64> {
-    let missing = |i: usize, tap: Tap| weights[i] * (wanted[i] - filter.read(&values, tap));
-    let mut residual = filter.scatter(taps, missing, false);
-    // Texels that no point reads stay as they are.
-    let diagonal = filter.scatter(taps, |i, _| weights[i], true);
-    let scaled = |residual: &[f64]| -> Vec<f64> {
-        let pairs = residual.iter().zip(&diagonal);
-        pairs.map(|(r, d)| if *d > 0.0 { r / d } else { 0.0 }).collect()
-    };
-    let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
-    let mut step = scaled(&residual);
-    let mut norm = dot(&residual, &step);
-    let first = norm;
-    for _ in 0..STEPS {
-        if !(norm > ENOUGH * first) {
-            break;
+/// The normal equations of weighted least squares for a change of the texels.
+struct Equations {
+    /// The matrix, symmetric, by its diagonals from the main one on: the distance of the two texels
+    /// that it couples, and the coupling of each texel with that one.
+    diagonals: Vec<(usize, Vec<f64>)>,
+    right: Vec<f64>,
+}
+
+impl Equations {
+    fn new(filter: &Filter) -> Self {
+        let all = filter.corners(Tap { first: 0, shares: [0.5; AXES] });
+        let corners: Vec<usize> = all.map(|(texel, _)| texel).collect();
+        let mut distances: Vec<usize> =
+            corners.iter().flat_map(|a| corners.iter().map(|b| a.abs_diff(*b))).collect();
+        distances.sort_unstable();
+        distances.dedup();
+        let empty = |distance| (distance, vec![0.0; filter.texels]);
+        Self {
+            diagonals: distances.into_iter().map(empty).collect(),
+            right: vec![0.0; filter.texels],
         }
-        let image = filter.scatter(taps, |i, tap| weights[i] * filter.read(&step, tap), false);
-        let length = norm / dot(&step, &image);
-        for i in 0..filter.texels {
-            values[i] += length * step[i];
-            residual[i] -= length * image[i];
-        }
-        let next = scaled(&residual);
-        let now = dot(&residual, &next);
-        for (step, next) in step.iter_mut().zip(next) {
-            *step = next + now / norm * *step;
-        }
-        norm = now;
     }
-    values
+
+    /// Sums them over points of these weights, at which this much is missing.
+    fn sum(&mut self, filter: &Filter, targets: &[Target], weights: &[f64], missing: &[f64]) {
+        self.right.fill(0.0);
+        self.diagonals.iter_mut().for_each(|(_, diagonal)| diagonal.fill(0.0));
+        for ((target, weight), missing) in targets.iter().zip(weights).zip(missing) {
+            for (a, share) in filter.corners(target.tap) {
+                let share = weight * share;
+                self.right[a] += share * missing;
+                for (b, other) in filter.corners(target.tap).filter(|&(b, _)| b >= a) {
+                    let at =
+                        self.diagonals.binary_search_by_key(&(b - a), |&(distance, _)| distance);
+                    self.diagonals[at.expect("texels of one cell")].1[a] += share * other;
+                }
+            }
+        }
+    }
+
+    /// Adds the solution to `values`. Texels that no point reads stay as they are.
+    fn improve(&self, values: &mut [f64]) {
+        let scaled = |residual: &[f64]| -> Vec<f64> {
+            let pairs = residual.iter().zip(&self.diagonals[0].1);
+            pairs.map(|(r, d)| if *d > 0.0 { r / d } else { 0.0 }).collect()
+        };
+        let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+        let mut residual = self.right.clone();
+        let mut step = scaled(&residual);
+        let mut norm = dot(&residual, &step);
+        let first = norm;
+        for _ in 0..STEPS {
+            if !(norm > ENOUGH * first) {
+                break;
+            }
+            let image = self.times(&step);
+            let length = norm / dot(&step, &image);
+            for (i, value) in values.iter_mut().enumerate() {
+                *value += length * step[i];
+                residual[i] -= length * image[i];
+            }
+            let next = scaled(&residual);
+            let now = dot(&residual, &next);
+            for (step, next) in step.iter_mut().zip(next) {
+                *step = next + now / norm * *step;
+            }
+            norm = now;
+        }
+    }
+
+    /// The product of the matrix and a vector.
+    fn times(&self, x: &[f64]) -> Vec<f64> {
+        let (_, main) = &self.diagonals[0];
+        let mut product: Vec<f64> = main.iter().zip(x).map(|(d, x)| d * x).collect();
+        for (distance, diagonal) in &self.diagonals[1..] {
+            let distance = *distance;
+            for ((sum, d), x) in product.iter_mut().zip(diagonal).zip(&x[distance..]) {
+                *sum += d * x;
+            }
+            for ((sum, d), x) in product[distance..].iter_mut().zip(diagonal).zip(x) {
+                *sum += d * x;
+            }
+        }
+        product
+    }
 }
 
 #[cfg(test)]
