@@ -241,12 +241,12 @@ mod tests {
                 normals(&views, &numbers, &mut m);
                 let mut values = vec![0.0; count];
                 masking(&views, &mut values);
-                for i in 0..count {
-                    let want = ggx::single::caps(sigma, views[i], numbers[i]);
+                for (((v, u), m), masked) in views.iter().zip(&numbers).zip(&m).zip(&values) {
+                    let want = ggx::single::caps(sigma, *v, *u);
                     // A root next to 0, at the ends of a cap, magnifies roundings of its argument.
-                    assert!(want.abs_diff_eq(m[i], 5e-6), "{width:?} {i}: {} for {want}", m[i]);
-                    let want = ggx::g1(sigma, views[i]);
-                    assert!((values[i] - want).abs() < 3e-7, "{width:?} {i}: {}", values[i]);
+                    assert!(want.abs_diff_eq(*m, 5e-6), "{width:?} {v} {u:?}: {m} for {want}");
+                    let want = ggx::g1(sigma, *v);
+                    assert!((masked - want).abs() < 3e-7, "{width:?} {v}: {masked} for {want}");
                 }
                 tried += count;
             }
