@@ -11,10 +11,12 @@ mod conductors;
 mod error;
 mod figures;
 mod files;
+mod furnace;
 mod inputs;
 mod paper;
 mod per_hit;
 mod plot;
+mod processor;
 mod rival;
 mod rivals;
 mod rows;
@@ -86,8 +88,8 @@ struct Options {
     /// Seed of views and random numbers.
     #[arg(long, global = true, default_value_t = 1)]
     seed: u64,
-    /// Folder for bench.csv, bench.json, bench.svg, every time of the sweep (sweep.csv) and the
-    /// files of `paper`.
+    /// Folder for bench.csv, bench.json, bench.svg, samplers by noise (furnace.csv), every time of
+    /// the sweep (sweep.csv) and the files of `paper`.
     #[arg(long, global = true, value_name = "FOLDER")]
     out: Option<PathBuf>,
     /// Print JSON instead of tables.
@@ -134,7 +136,11 @@ fn run(Args { part, options }: Args) -> Result<(), Failure> {
     if let Some(folder) = &options.out {
         files::write(folder, &files)?;
     }
-    if options.json { print(&format!("{json:#}\n")) } else { print(&text) }
+    if options.json {
+        print(&format!("{json:#}\n"))
+    } else {
+        print(&format!("processor: {}\n\n{text}", processor::name()))
+    }
 }
 
 /// What one run is to write, by name, and to print.
@@ -145,21 +151,25 @@ fn everything(settings: &Settings, files: bool) -> Result<Results, Failure> {
     let slices = Slices::bake();
     stage("rivals: times and errors");
     let rows = rows::rows(&slices, settings);
+    stage("furnace: what a user would pick instead");
+    let furnace = furnace::rows(slices.whole(), settings);
     stage("sweep: times over the whole domain");
     let cells = sweep::cells(slices.whole(), settings);
     let sweep = sweep::summaries(&cells);
     let paper = Paper::measure(slices.whole(), settings, stage);
     let mut figures = figures::figures(&rows, &paper.approximation, &slices, settings);
+    figures.extend(furnace::figures(&furnace));
     figures.extend(cliffs::figures(slices.whole(), &sweep, settings));
     let json = json!({
-        "sigma": SIGMA, "gamma": GAMMA,
+        "processor": processor::name(), "sigma": SIGMA, "gamma": GAMMA,
         "inputs": "views evenly over the hemisphere, random numbers uniform in [0, 1)",
         "calls": settings.calls, "rounds": settings.rounds, "seed": settings.seed,
-        "rows": rows, "sweep": sweep, "figures": figures, "paper": paper.json(),
+        "rows": rows, "furnace": furnace, "sweep": sweep, "figures": figures, "paper": paper.json(),
     });
     let files = if files {
         let own = [
             ("bench.csv", files::csv(&[], &rows)?),
+            ("furnace.csv", files::csv(&[], &furnace)?),
             ("bench.json", format!("{json:#}\n").into_bytes()),
             ("bench.svg", plot::svg(&rows).into_bytes()),
             ("sweep.csv", files::csv(&sweep::Cell::COLUMNS, &cells)?),
@@ -168,8 +178,13 @@ fn everything(settings: &Settings, files: bool) -> Result<Results, Failure> {
     } else {
         Vec::new()
     };
-    let text =
-        [terminal::table(&rows), terminal::sweep(&sweep), terminal::block(&figures), paper.text()];
+    let text = [
+        terminal::table(&rows),
+        terminal::furnace(&furnace),
+        terminal::sweep(&sweep),
+        terminal::block(&figures),
+        paper.text(),
+    ];
     Ok((files, text.join("\n"), json))
 }
 

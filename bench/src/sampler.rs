@@ -14,6 +14,7 @@ use crate::rival::{Draw, Rival, each, in_a_loop, lobe};
 use crate::rivals::beckmann;
 use crate::rivals::bilinear::Bilinear;
 use crate::rivals::ggx::{double, single};
+use crate::rivals::lanes::{self, Width};
 use crate::rivals::lobe::Lobe;
 use crate::rivals::stream::Drawer;
 use crate::settings::{GAMMA, SIGMA};
@@ -92,6 +93,9 @@ fn streamed<'a>(seed: u64, one: impl Fn(Vec3, &mut Stream) -> Vec3 + 'a) -> Draw
 
 /// Names that figures refer to.
 pub(crate) const CAPS: &str = "GGX, spherical caps";
+/// In lanes, by width; a row each where the processor has the instructions.
+pub(crate) const LANES: [(&str, Width); 2] =
+    [("GGX, spherical caps, 4 lanes", Width::Four), ("GGX, spherical caps, 8 lanes", Width::Eight)];
 pub(crate) const BATCH: &str = "table, default, batch";
 pub(crate) const INVERSION: &str = "inversion of the CDF, any gamma";
 pub(crate) const INVERSION_SUM: &str = "inversion of the CDF, integer gamma";
@@ -146,6 +150,11 @@ pub(crate) fn samplers(slices: &Slices, seed: u64) -> Vec<Rival<Sampler<'_>>> {
         visible("mixture of Beckmanns", GAMMA, Check::Distribution, mixture),
         with_density(ndf, Density::Ndf),
     ];
+    all.extend(
+        LANES.into_iter().filter_map(|(name, width)| {
+            Some(visible(name, 2.0, of_caps, lanes::caps(width, sigma)?))
+        }),
+    );
     all.extend(slices.each().map(|(name, set)| {
         let lobe = lobe(set, GAMMA);
         one(name, GAMMA, Check::Cdf, move |v, u| lobe.sample_visible_normal(v, u)).of(set)

@@ -1,6 +1,7 @@
 //! Rows and figures for the terminal, in columns.
 
 use crate::figures::Figure;
+use crate::furnace;
 use crate::rows::{Quantity, Row};
 use crate::settings::SIGMA;
 use crate::sweep::Summary;
@@ -16,23 +17,55 @@ pub(crate) fn table(rows: &[Row]) -> String {
         (Quantity::Evaluation, "conductor, eval_pdf"),
         (Quantity::PerHit, "parameters per hit"),
     ] {
+        // A line has at most 100 columns; names of normals are shorter.
+        let is_normal = quantity == Quantity::Normal;
+        let [wide, narrow] = if is_normal { [40, 6] } else { [43, 7] };
         text += &format!(
-            "\n{title:42} {:>6} {:>9} {:>8} {:>8} {:>9} {:>9}",
+            "\n{title:wide$}{:>narrow$}{:>8}{:>8}{:>7}{:>7}{:>7}",
             "gamma", "ns", "bytes", "stored", "max", "rms"
         );
-        text += if quantity == Quantity::Normal { "  variance  var x ns\n" } else { "\n" };
+        text += &if is_normal { format!("{:>8}{:>9}\n", "var.", "var x ns") } else { "\n".into() };
         for row in rows.iter().filter(|row| row.quantity == quantity) {
             let error = |x: Option<f64>| x.map_or("-".into(), |x| format!("{x:.1e}"));
             let (max, rms) = (error(row.error_max), error(row.error_rms));
             let Row { name, ns, bytes, stored_bytes: stored, .. } = row;
             let gamma = if row.gamma.is_nan() { "varies".into() } else { row.gamma.to_string() };
-            text +=
-                &format!("{name:42} {gamma:>6} {ns:>9.2} {bytes:>8} {stored:>8} {max:>9} {rms:>9}");
+            text += &format!(
+                "{name:wide$}{gamma:>narrow$}{ns:>8.2}{bytes:>8}{stored:>7}{max:>7}{rms:>7}"
+            );
             if let (Some(variance), Some(cost)) = (row.furnace_variance, row.variance_ns) {
-                text += &format!(" {variance:>9.5} {cost:>9.3}");
+                text += &format!("{variance:>8.5}{cost:>9.3}");
             }
             text.push('\n');
         }
+    }
+    text
+}
+
+/// Samplers of every material, by noise and time.
+pub(crate) fn furnace(rows: &[furnace::Row]) -> String {
+    let mut text = format!(
+        "{:30}{:>6}{:>6}{:>6}{:>7}{:>7}{:>7}{:>7}{:>8}{:>7}{:>9}\n",
+        "what a user would pick instead",
+        "sigma",
+        "gamma",
+        "drawn",
+        "cos .9",
+        "cos .5",
+        "cos .1",
+        "mean",
+        "largest",
+        "ns",
+        "var x ns"
+    );
+    for row in rows {
+        let &furnace::Row { name, sigma, gamma, drawn_sigma: drawn, .. } = row;
+        let &furnace::Row { variance, largest, ns, variance_ns: cost, .. } = row;
+        let [a, b, c] = [row.variance_09, row.variance_05, row.variance_01];
+        text += &format!(
+            "{name:30}{sigma:>6}{gamma:>6}{drawn:>6.3}{a:>7.4}{b:>7.4}{c:>7.4}{variance:>7.4}\
+             {largest:>8.2}{ns:>7.1}{cost:>9.3}\n"
+        );
     }
     text
 }

@@ -11,10 +11,11 @@ use microfacet_sampler::lobe::{Batch as _, FamilyLobe};
 
 use crate::inputs::{COUNT, Inputs};
 use crate::rival::{Evaluate, Rival, each_value, lobe};
+use crate::rivals::lanes::Width;
 use crate::rivals::lobe::Lobe;
 use crate::rivals::logarithm::Logarithm;
 use crate::rivals::rational::Rational;
-use crate::rivals::{beckmann, ggx};
+use crate::rivals::{beckmann, ggx, lanes};
 use crate::settings::{GAMMA, SIGMA};
 use crate::tables::Slices;
 use crate::textures::Texture;
@@ -23,6 +24,10 @@ use crate::textures::Texture;
 pub(crate) const GGX: &str = "GGX, closed form";
 pub(crate) const BITS: &str = "table by the bits of the float";
 pub(crate) const LOGARITHM: &str = "logarithm and exponential, as before";
+
+/// In lanes, by width.
+const LANES: [(&str, Width); 2] =
+    [("GGX, closed form, 4 lanes", Width::Four), ("GGX, closed form, 8 lanes", Width::Eight)];
 
 const BECKMANN: f64 = f64::INFINITY;
 
@@ -52,6 +57,11 @@ pub(crate) fn maskings(slices: &Slices) -> Vec<Rival<Evaluate<'_>>> {
         Rival::form("table, default, batch", GAMMA, batch).of(slices.default()),
         Rival::form(FAMILY, GAMMA, of_family(slices, |lobe, w| lobe.g1(w))).of_family(slices),
     ];
+    all.extend(
+        LANES
+            .into_iter()
+            .filter_map(|(name, width)| Some(Rival::form(name, 2.0, lanes::g1(width, sigma)?))),
+    );
     all.extend(slices.each().map(|(name, set)| {
         let table = lobe(set, GAMMA);
         form(name, GAMMA, move |w| table.g1(w)).of(set)

@@ -42,10 +42,12 @@ fn every_rival_is_measured_and_written() {
     let at = folder.path();
     let text = printed(at, &["--quick", "--calls", "64", "--out", "out"]);
     for part in [
+        "processor: ",
         "GGX, spherical caps",
         "table, default",
         "var x ns",
         "parameters per hit",
+        "what a user would pick instead",
         "sweep, ns a call",
         "must",
         "a lobe from tables, us",
@@ -68,8 +70,9 @@ fn every_rival_is_measured_and_written() {
     assert!(number(row("g1", "rational approximation (eq. 22-23)"), "error_max") > 1e-3);
     parameters_are_of_hits(&rows);
     assert_eq!(row("normal", "GGX, spherical caps")["bytes"], "0");
-    for name in ["as listed", "as listed, in a loop"] {
-        let row = row("normal", &format!("GGX, spherical caps {name}"));
+    let lanes = if cfg!(target_arch = "x86_64") { &[", 4 lanes"][..] } else { &[] };
+    for name in [" as listed", " as listed, in a loop"].iter().chain(lanes) {
+        let row = row("normal", &format!("GGX, spherical caps{name}"));
         assert!(number(row, "error_max") < 1e-4, "{row:?}");
     }
     assert_eq!(row("normal", "exact by rejection")["error_max"], "");
@@ -90,6 +93,7 @@ fn every_rival_is_measured_and_written() {
     assert_eq!(figures[0]["name"], "sigma per hit / bound sample");
     assert!(figures.iter().all(|figure| figure["aim"].as_f64() <= figure["must"].as_f64()));
 
+    furnaces_are_compared(&read(&at.join("out/furnace.csv")));
     sweep_is_whole(&read(&at.join("out/sweep.csv")), &json);
 
     let drawn = std::fs::read_to_string(at.join("out/bench.svg")).unwrap();
@@ -128,6 +132,28 @@ fn parameters_are_of_hits(rows: &[Record]) {
     for name in ["table by the bits of the float", "logarithm and exponential, as before"] {
         let row = of("d").find(|row| row["name"] == name && row["gamma"] == "4.0").unwrap();
         assert!(number(row, "error_max") < 2e-6, "{row:?}");
+    }
+}
+
+/// Every material has each sampler, and its noise is that of its columns. Visible normals never
+/// weigh more than 1.
+fn furnaces_are_compared(rows: &[Record]) {
+    let names = distinct(rows.iter(), "name");
+    let of = |material: &Record, name: &str| {
+        let same = |row: &&Record| {
+            ["sigma", "gamma"].iter().all(|key| row[*key] == material[*key]) && row["name"] == name
+        };
+        rows.iter().filter(same).count()
+    };
+    assert!(names.len() >= 3 && rows.len() == 8 * names.len(), "{names:?}");
+    for row in rows {
+        assert!(names.iter().all(|name| of(row, name) == 1), "{row:?}");
+        let product = number(row, "variance") * number(row, "ns");
+        assert!((number(row, "variance_ns") / product - 1.0).abs() < 1e-3, "{row:?}");
+        let is_drawn_as_it_is = row["drawn_sigma"] == row["sigma"];
+        assert_eq!(is_drawn_as_it_is, row["ours"] == "true", "{row:?}");
+        let visible = row["name"].starts_with("visible normals");
+        assert!(!visible || number(row, "largest") <= 1.0, "{row:?}");
     }
 }
 

@@ -29,11 +29,13 @@ pub(crate) fn nine(x: f32, c: &[f32; 9]) -> f32 {
         + x * polynomial(square, &[c[1], c[3], c[5], c[7]])
 }
 
+/// The sine from −¼ to ¼ of a turn, to 7e-9: the turn times a polynomial in its square.
+pub(crate) const SINE: [f32; 5] =
+    [6.283_185_28, -41.341_680_6, 81.602_476_4, -76.581_172_6, 39.759_827_1];
+
 /// The sine and the cosine of 2πu, u ∈ [0, 1], to 1e-7.
 #[inline(always)]
 pub(crate) fn turn(u: f32) -> [f32; 2] {
-    // From −¼ to ¼ of a turn, to 7e-9.
-    const SINE: [f32; 5] = [6.283_185_28, -41.341_680_6, 81.602_476_4, -76.581_172_6, 39.759_827_1];
     let sine = |x: f32| x * polynomial(x * x, &SINE);
     let x = 0.5 - u;
     let quarter = x.abs() - 0.25;

@@ -6,6 +6,7 @@ pub(crate) mod conductor;
 pub(crate) mod elementary;
 pub(crate) mod form;
 pub(crate) mod ggx;
+pub(crate) mod lanes;
 pub(crate) mod lobe;
 pub(crate) mod logarithm;
 pub(crate) mod lookup;

@@ -214,8 +214,10 @@ mod tests {
             .filter(|line| line.contains(">rival "))
             .map(|line| {
                 let at = |i| line.split('"').nth(i).unwrap().parse::<f64>().unwrap();
-                let (left, width) = (line.contains("\"end\""), text::width("rival 0", 10.5));
-                [if left { at(1) - width } else { at(1) }, at(3), width]
+                let width = text::width("rival 0", 10.5);
+                let before = [("\"end\"", width), ("\"middle\"", 0.5 * width)];
+                let before = before.iter().find(|(anchor, _)| line.contains(anchor));
+                [at(1) - before.map_or(0.0, |(_, before)| *before), at(3), width]
             })
             .collect();
         assert_eq!(names.len(), 6);
