@@ -11,7 +11,7 @@ fn load(bytes: &[u8]) {
         let Ok(material) = set.student_t(0.3_f32, gamma) else { continue };
         let v = [0.6, 0.0, 0.8];
         for u in [[0.0, 0.0], [0.3, 0.7], [1.0, 1.0]] {
-            let m = material.sample_visible_normal(v, u);
+            let (m, _) = material.sample_with_table_pdf(v, u);
             let _ = (material.table_pdf(v, m), material.visible_normal_pdf(v, m), material.g1(m));
         }
     }

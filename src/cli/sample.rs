@@ -14,7 +14,6 @@ use microfacet_baker::progress::Stage;
 use microfacet_baker::store::replace_with;
 use microfacet_model as model;
 use microfacet_model::MicrofacetDistribution as _;
-use microfacet_sampler::MicrofacetDistribution as _;
 use microfacet_sampler::lobe::Tabulated as _;
 use microfacet_validate::configuration::Configuration;
 
@@ -89,8 +88,9 @@ fn source(args: &Args) -> Result<Draw> {
             values::tabulated(&[gamma], ", or draw exact normals with --method exact")?;
             let lobe = tables(args.tables.as_deref())?.lobe(args.sigma, gamma)?;
             Ok(Box::new(move |random| {
-                let m = lobe.sample_visible_normal(v, [random.random(), random.random()]);
-                (m.into(), lobe.table_pdf(v, m))
+                let u = [random.random(), random.random()];
+                let (m, density) = lobe.sample_with_table_pdf(v, u);
+                (m.into(), density)
             }))
         }
         Method::Exact => {

@@ -84,6 +84,7 @@ pub(super) fn common<L: Batch + Reflecting + Tabulated + 'static>() -> Vec<Funct
         each("sample_reflected", true, |lobe: &L, at| lobe.sample_reflected(at.v, at.u, G2)),
         each("eval_pdf", true, |lobe: &L, at| lobe.eval_pdf(at.v, at.l, G2)),
         each("table_pdf", true, |lobe: &L, at| lobe.table_pdf(at.v, at.m)),
+        each("sample_with_table_pdf", true, |lobe: &L, at| lobe.sample_with_table_pdf(at.v, at.u)),
         Function {
             name: "sample_batch",
             reads_numbers: true,

@@ -361,6 +361,10 @@ impl Tabulated for BoundedRef<'_> {
         self.lobe.table_pdf(v, m)
     }
 
+    fn sample_with_table_pdf(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> ([f32; 3], f32) {
+        self.lobe.sample_with_table_pdf(v, u)
+    }
+
     fn key(&self) -> LobeKey {
         self.lobe.key()
     }
@@ -439,6 +443,15 @@ impl BoundedView<'_> {
     #[must_use]
     pub fn table_pdf(&self, m: impl Into<[f32; 3]>) -> f32 {
         self.lobe.table_pdf(self.v, m) / self.share
+    }
+
+    /// [`sample`](Self::sample) and its [`table_pdf`](Self::table_pdf), in less time than one after
+    /// the other.
+    #[must_use]
+    pub fn sample_with_table_pdf(&self, u: [f32; 2]) -> ([f32; 3], f32) {
+        let u = [within(self.from, self.share, u[0]), u[1]];
+        let (m, density) = self.lobe.sample_with_table_pdf(self.v, u);
+        (m, density / self.share)
     }
 }
 

@@ -96,6 +96,14 @@ macro_rules! forward {
                 $to!(self, lobe => lobe.table_pdf(v, m))
             }
 
+            fn sample_with_table_pdf(
+                &self,
+                v: impl Into<[f32; 3]>,
+                u: [f32; 2],
+            ) -> ([f32; 3], f32) {
+                $to!(self, lobe => lobe.sample_with_table_pdf(v, u))
+            }
+
             fn key(&self) -> LobeKey {
                 $to!(self, lobe => lobe.key())
             }

@@ -110,7 +110,8 @@ pub trait MicrofacetDistribution {
     /// A visible normal and its analytic density, [`visible_normal_pdf`](Self::visible_normal_pdf).
     ///
     /// The samples differ from this density by the errors of the tables, some 1e-4 of the CDF;
-    /// where that bias matters divide by [`table_pdf`](crate::lobe::Tabulated::table_pdf).
+    /// where that bias matters divide by the density of
+    /// [`sample_with_table_pdf`](crate::lobe::Tabulated::sample_with_table_pdf).
     #[must_use]
     #[inline]
     fn sample_with_pdf(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> ([f32; 3], f32) {

@@ -14,7 +14,7 @@ use super::delegate::{by_ref, forward};
 use super::distribution::{Facet, MicrofacetDistribution, SMOOTH, is_hidden, visible_density};
 use super::horizon::{HORIZON, above_horizon};
 use super::key::{LobeKey, has_pole};
-use super::lanes::one::draw;
+use super::lanes::one::{Reads, draw_located};
 use super::lanes::views::{View, Views};
 use super::lanes::{first_three, sum};
 use super::matrix::{ENTRIES, Matrix};
@@ -22,7 +22,7 @@ use super::reflecting::Reflecting;
 use super::slices::Slices;
 use super::student_t::StudentT;
 use super::surface::{Shape, Stretched, Surface};
-use super::tabulated::Tabulated;
+use super::tabulated::{Tabulated, with_table_pdf};
 use crate::error::{BatchError, MaterialError};
 use crate::vector::vec3;
 
@@ -155,14 +155,14 @@ impl EllipsoidRef<'_> {
         masking.g2_over_g1(unclamped.min(1.0), self.g1(l)) / unclamped.max(1.0)
     }
 
-    /// The lobe's [common case](draw) between U and Uᵀ; `None` elsewhere, and
-    /// for views below the lobe's horizon.
+    /// The lobe's [common case](draw_located) between U and Uᵀ, and where its view and numbers are
+    /// in the tables; `None` elsewhere, and for views below the lobe's horizon.
     ///
     /// A normal takes 1.2 times as long as one of the untilted anisotropic lobe, 1.1 to 1.2 times
     /// with its density; by the general path it took twice as long
     /// (`cargo run --profile dist -p microfacet-study -- ellipsoid_cost`).
     #[inline(always)]
-    fn sample_fast<const HEAVY: bool>(&self, v: Vec3, u: [f32; 2]) -> Option<f32x4> {
+    fn sample_fast<const HEAVY: bool>(&self, v: Vec3, u: [f32; 2]) -> Option<(Vec3, View, Reads)> {
         let Matrix { p, q, r, x, y } = self.matrix;
         let w = self.to_unit(v);
         if !(w.z >= 0.0) {
@@ -177,12 +177,13 @@ impl EllipsoidRef<'_> {
         };
         let xy = f32x4::new([w.x, w.y, 0.0, 0.0]);
         let view = View::new::<_, HEAVY>(self.slices, xy, w.z);
-        let m = draw::<_, HEAVY>(self.slices, &view, u, [1.0; 2], to_tangent)?;
+        let reads = Reads::new::<_, HEAVY>(self.slices, &view, u)?;
+        let m = draw_located::<_, HEAVY>(self.slices, &view, &reads, [1.0; 2], to_tangent)?;
         // Refused where an almost singular matrix has taken squares out of range, so that the
         // length is not 1 (also where z was as long as the rest before it shrank), and for a normal
         // below the smallest cosine.
         let [[off, ..], [_, _, z, _]] = [(sum(m * m) - 1.0).abs(), m].map(f32x4::to_array);
-        (off < 5e-7 && z >= HORIZON).then_some(m)
+        (off < 5e-7 && z >= HORIZON).then(|| (first_three(m), view, reads))
     }
 
     /// A visible normal of a lobe with a heavy part, out of line so that calls of other lobes stay
@@ -190,7 +191,22 @@ impl EllipsoidRef<'_> {
     #[inline(never)]
     fn sample_heavy(&self, x: f32, y: f32, z: f32, u: [f32; 2]) -> Vec3 {
         let m = self.sample_fast::<true>(Vec3::new(x, y, z), u);
-        m.map_or_else(|| self.sample_general(x, y, z, u), first_three)
+        m.map_or_else(|| self.sample_general(x, y, z, u), |(m, ..)| m)
+    }
+
+    /// A visible normal, and its density where that is a by-product; `None` where the draw is not
+    /// the common one.
+    #[inline(always)]
+    fn draw_with_density<const HEAVY: bool>(
+        &self,
+        v: Vec3,
+        u: [f32; 2],
+    ) -> Option<(Vec3, Option<f32>)> {
+        let (m, view, reads) = self.sample_fast::<HEAVY>(v, u)?;
+        // The length of U⁻ᵀm is in the ratio of solid angles and in the cosine of unit space, and
+        // cancels; U⁻ᵀ leaves z as it is.
+        let area = self.matrix.p * self.matrix.r;
+        Some((m, self.slices.density_of_reads(&reads, view.at, area, m.z)))
     }
 
     /// A visible normal for every matrix and view.
@@ -256,7 +272,7 @@ impl MicrofacetDistribution for EllipsoidRef<'_> {
             return self.sample_heavy(v.x, v.y, v.z, u).to_array();
         }
         let m = self.sample_fast::<false>(v, u);
-        m.map_or_else(|| self.sample_general(v.x, v.y, v.z, u), first_three).to_array()
+        m.map_or_else(|| self.sample_general(v.x, v.y, v.z, u), |(m, ..)| m).to_array()
     }
 
     #[inline]
@@ -330,6 +346,16 @@ impl Tabulated for EllipsoidRef<'_> {
         let density = self.slices.density_of_samples([1.0; 2], w, unit / length) * stretch;
         // For a normal far from unit length powers of the length are out of range, and 0·∞ is NaN.
         if density > 0.0 { density.min(f32::MAX) } else { 0.0 }
+    }
+
+    fn sample_with_table_pdf(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> ([f32; 3], f32) {
+        let v = vec3(v);
+        let drawn = if self.slices.peeled {
+            self.draw_with_density::<true>(v, u)
+        } else {
+            self.draw_with_density::<false>(v, u)
+        };
+        with_table_pdf(self, drawn, v, u)
     }
 
     fn key(&self) -> LobeKey {

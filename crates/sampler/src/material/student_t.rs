@@ -26,7 +26,7 @@ use super::reflecting::Reflecting;
 use super::roughness::{checked, clamped};
 use super::slices::Slices;
 use super::surface::{Scales, Shape, Stretched, Surface};
-use super::tabulated::Tabulated;
+use super::tabulated::{Tabulated, with_table_pdf};
 use crate::error::{BatchError, MaterialError};
 use crate::vector::vec3;
 
@@ -234,6 +234,16 @@ impl Tabulated for StudentTRef<'_> {
         let (v, m) = (vec3(v), vec3(m));
         let Surface { shape, scales: Scales { sigma, .. } } = self.surface;
         if is_hidden(v, m) { 0.0 } else { shape.density_of_samples(sigma, v, m) }
+    }
+
+    fn sample_with_table_pdf(&self, v: impl Into<[f32; 3]>, u: [f32; 2]) -> ([f32; 3], f32) {
+        let v = vec3(v);
+        let drawn = if self.surface.shape.peeled {
+            self.draw_with_density::<true>(v, u)
+        } else {
+            self.draw_with_density::<false>(v, u)
+        };
+        with_table_pdf(self, drawn, v, u)
     }
 
     fn key(&self) -> LobeKey {

@@ -15,21 +15,30 @@ use wide::{bytemuck, f32x4, i32x4};
 
 use microfacet_core::math::{sqrt64, unit};
 use microfacet_tables::axis::MirroredRoot;
-use microfacet_tables::axis::half_tangent::{ends, ends_and_rate, slope_at};
+use microfacet_tables::axis::half_tangent::{ends, ends_and_rate, rate_at, slope_at};
 use microfacet_tables::axis::hermite::{Cubic, Node, split};
 
 use super::distribution::MicrofacetDistribution as _;
+use super::horizon::HORIZON;
+use super::lanes::first_three;
+use super::lanes::one::{Reads, draw_located};
 use super::slices::Slices;
-use super::student_t::StudentT;
-use super::surface::{Shape, Stretched, Surface};
+use super::student_t::{StudentT, StudentTRef};
+use super::surface::{Scales, Shape, Stretched, Surface};
 use crate::elementary::{exp2, log2};
 use crate::vector::vec3;
 
-/// A normal's slopes in unit space: in-plane x : z, and across y : z, with t = y/√(z² + s x²).
-struct UnitSlopes {
+/// A normal's in-plane slope x : z in unit space, and √(z² + s x²), up to a common factor.
+struct InPlane {
     x: f64,
     z: f64,
-    y: f64,
+    norm: f64,
+}
+
+impl InPlane {
+    fn new(x: f64, z: f64, s: f32) -> Self {
+        Self { x, z, norm: sqrt64(z * z + f64::from(s) * x * x) }
+    }
 }
 
 /// Two neighbouring rows of a table and the position between them.
@@ -71,7 +80,7 @@ impl<'a> Rows<'a> {
 /// Where the interpolated inverse CDF of one half of a mirrored axis takes a value.
 struct Cell {
     cell: usize,
-    width: f64,
+    cells: usize,
     g: f64,
     nodes: [Node; 2],
 }
@@ -81,12 +90,21 @@ struct Cell {
 /// density of the map may vanish at 0.
 const LEAST_T: f64 = 1.0 / 4096.0;
 
-/// A coordinate in [0, 1], and the derivative of the value there.
+/// A place on an axis of `cells` cells, and the derivative of the value there, by cells.
 struct Place {
-    t: f64,
-    dg_dt: f64,
-    /// Whether it stands for coordinates nearer to the end.
+    at: f64,
+    slope: f64,
+    cells: f64,
+    /// Whether it stands for places nearer to the end.
     is_end: bool,
+}
+
+impl Place {
+    #[inline(always)]
+    fn new(cubic: &Cubic, at: f64, w: f64, cells: usize) -> Self {
+        let cells = cells as f64;
+        Self { at, slope: cubic.derivative(w), cells, is_end: !(at > LEAST_T * cells) }
+    }
 }
 
 impl Cell {
@@ -99,25 +117,26 @@ impl Cell {
         // which meet at u = ½ up to the rounding of their nodes, or beyond the silhouette at the
         // first node. It is clamped to the nearer end of the cell.
         let g = g.max(f64::from(nodes[0][0])).min(f64::from(nodes[1][0]));
-        Self { cell, width: 1.0 / cells as f64, g, nodes }
+        Self { cell, cells, g, nodes }
     }
 
-    /// The coordinate of the value, to 1e-11.
+    /// The place of the value, to 1e-11.
     #[inline(always)]
     fn place(&self) -> Place {
         let cubic = Cubic::new(self.nodes[0], self.nodes[1]);
-        let t = (self.cell as f64 + cubic.solve(self.g)) * self.width;
-        let is_end = !(t > LEAST_T);
-        let t = if is_end { LEAST_T } else { t };
-        let w = (t / self.width - self.cell as f64).min(1.0);
-        Place { t, dg_dt: cubic.derivative(w) / self.width, is_end }
+        let cell = self.cell as f64;
+        let at = (cell + cubic.solve(self.g)).max(LEAST_T * self.cells as f64);
+        Place::new(&cubic, at, (at - cell).min(1.0), self.cells)
     }
 }
 
 impl Place {
-    /// du/dg; ∞ where many random numbers have one slope.
-    fn density(&self) -> f64 {
-        MirroredRoot::rate(self.t) / self.dg_dt.max(0.0)
+    /// du/dg as a quotient; over 0 where many random numbers have one slope.
+    #[inline(always)]
+    fn density(&self) -> [f64; 2] {
+        // du/dt is a multiple of t³, and t is at/cells.
+        let square = self.cells * self.cells;
+        [MirroredRoot::rate(self.at), square * square * self.slope.max(0.0)]
     }
 }
 
@@ -132,35 +151,101 @@ impl Slices {
         let view = Stretched::new([sx * v.x, sy * v.y, v.z]);
         let at = self.row(&view);
         let Some(rows) = self.rows_at(at) else { return 0.0 };
-        let slopes = unit_slopes(&view, sigma, m);
-        let UnitSlopes { x, z, y } = slopes;
-        let ([low, high], rate) = ends_and_rate(x, z);
-        let (half, cell) = self.cell_along(&rows, [low, high]);
-        let place = cell.place();
-        let mut along = place.density() * rate;
-        let mut heavy = 0.0;
-        if self.peeled {
-            heavy = f64::from(unit(self.heavy.share(at)));
-            along = (1.0 - heavy) * along + heavy * self.heavy_density(&slopes);
-        }
-        let s = f64::from(self.s);
-        let norm = sqrt64(z * z + s * x * x);
-        let ([_, g], rate) = ends_and_rate(y.abs(), norm);
+        let (slope, y) = unit_slopes(&view, sigma, self.s, m);
+        let heavy = self.heavy_share(at);
+        let (along, is_end) = self.along(&rows, &slope, heavy);
+        let ([_, g], rate) = ends_and_rate(y.abs(), slope.norm);
         let place_across = self.cell_across(g).place();
-        let across = place_across.density() * rate;
-        // p(x, y) = p(x) p(t)/√(1 + s x²); `along` is per unit of x/z. Slopes in the tangent frame
-        // scale by σ, and dm = cos³θ per slope area.
-        let cos = f64::from(m.z);
-        let [sx, sy] = sigma.map(f64::from);
-        let area = norm * sx * sy * (cos * cos * cos);
-        let density = along * across * z / area;
-        let density = if density > 0.0 { density.min(f64::from(f32::MAX)) as f32 } else { 0.0 };
-        // The heavy part extends beyond the end of a peeled table.
-        let is_end = place.is_end && (half == 0 || heavy == 0.0);
+        let across = times(place_across.density(), [rate, 1.0]);
+        let density = self.per_steradian(&slope, [along, across], heavy, sx * sy, m.z);
         if is_end || place_across.is_end || density == 0.0 {
             return self.at_an_end(density, sigma, v, m);
         }
         density
+    }
+
+    /// [`density_of_samples`](Self::density_of_samples) of the normal that is drawn by `reads` for a
+    /// view at a coordinate, by its cosine. Their places and the slopes there are known, so nothing
+    /// is inverted. `area` is σxσy, or the determinant of a tilted lobe's matrix.
+    ///
+    /// `None` where a table ends.
+    #[inline(always)]
+    pub(super) fn density_of_reads(
+        &self,
+        reads: &Reads,
+        at: f32x4,
+        area: f32,
+        cos: f32,
+    ) -> Option<f32> {
+        let &Reads { low, high, between, across, t, w, towards, tail } = reads;
+        let ([t_along, t_across, ..], [w_along, w_across, ..]) =
+            (t.to_array().map(f64::from), w.map(f64::from));
+        let at = at.to_array()[0];
+        let heavy = self.heavy_share(at);
+        let (slope, along, is_end) = if let Some(number) = tail {
+            // A slope of the heavy part may be anywhere in the table.
+            let [x, z, shrink] = self.heavy.tail.half_slopes(f32x4::splat(number));
+            let [x, z, shrink] = [x, z, shrink].map(|x| f64::from(x.to_array()[0]));
+            let slope = InPlane::new(2.0 * x, z * shrink, self.s);
+            let (along, is_end) = self.along(&self.rows_at(at)?, &slope, heavy);
+            (slope, along, is_end)
+        } else {
+            let [v0, s0, v1, s1] = self.between(low, high, between).to_array();
+            let cubic = Cubic::new([v0, s0], [v1, s1]);
+            let place = Place::new(&cubic, t_along, w_along, self.half_cells);
+            let g = cubic.value(w_along);
+            let [x, z] = slope_at(g);
+            let x = if towards.to_array()[0].to_bits() == 0 { -x } else { x };
+            (InPlane::new(x, z, self.s), times(place.density(), rate_at(g)), place.is_end)
+        };
+
+        let cubic = Cubic::of_cell(self.across_cells.get(across)?);
+        let place_across = Place::new(&cubic, t_across, w_across, self.across.len() - 1);
+        let across = times(place_across.density(), rate_at(cubic.value(w_across)));
+
+        let density = self.per_steradian(&slope, [along, across], heavy, area, cos);
+        let is_inside = !is_end && !place_across.is_end && cos > HORIZON;
+        // The guard cell, which a number of ½ may read, is level.
+        (is_inside && density > 0.0 && density < f32::MAX).then_some(density)
+    }
+
+    /// The density of a normal with this slope and cosine, from those of the table as quotients:
+    /// `along` per unit of x/z, `across` per unit of t = y/√(z² + s x²).
+    #[inline(always)]
+    fn per_steradian(
+        &self,
+        slope: &InPlane,
+        [mut along, across]: [[f64; 2]; 2],
+        heavy: f64,
+        area: f32,
+        cos: f32,
+    ) -> f32 {
+        if self.peeled {
+            along[0] = (1.0 - heavy) * along[0] + heavy * self.heavy_density(slope) * along[1];
+        }
+        // p(x, y) = p(x) p(t)/√(1 + s x²). Slopes in the tangent frame scale by σ, and
+        // dm = cos³θ per slope area.
+        let cos = f64::from(cos);
+        let [number, of] = times(along, across);
+        let density = (number * slope.z) / (of * slope.norm * f64::from(area) * (cos * cos * cos));
+        if density > 0.0 { density.min(f64::from(f32::MAX)) as f32 } else { 0.0 }
+    }
+
+    /// The table's density at a slope, per unit of x/z as a quotient, and whether it ends there.
+    #[inline(always)]
+    fn along(&self, rows: &Rows<'_>, slope: &InPlane, heavy: f64) -> ([f64; 2], bool) {
+        let (ends, rate) = ends_and_rate(slope.x, slope.z);
+        let (half, cell) = self.cell_along(rows, ends);
+        let place = cell.place();
+        // The heavy part extends beyond the end of a peeled table.
+        let is_end = place.is_end && (half == 0 || heavy == 0.0);
+        (times(place.density(), [rate, 1.0]), is_end)
+    }
+
+    /// The share of the heavy part at a view's coordinate, 0 where all is tabulated.
+    #[inline(always)]
+    fn heavy_share(&self, at: f32) -> f64 {
+        if self.peeled { f64::from(unit(self.heavy.share(at))) } else { 0.0 }
     }
 
     /// A density where the table ends: not below the analytic one.
@@ -175,7 +260,7 @@ impl Slices {
     }
 
     /// Density of the heavy part at x/z: 2k s x (1 + s x²)^(−k−1) for x > 0.
-    fn heavy_density(&self, at: &UnitSlopes) -> f64 {
+    fn heavy_density(&self, at: &InPlane) -> f64 {
         let (s, two_gamma_minus_3) = (f64::from(self.s), 2.0 * self.gamma - 3.0);
         let x = (at.x / at.z).max(0.0);
         let base = 1.0 + s * x * x;
@@ -218,7 +303,8 @@ impl Slices {
     /// The random number at which a row of the table has the in-plane slope x : z.
     pub(super) fn number_along(&self, rows: &Rows<'_>, x: f64, z: f64) -> f64 {
         let (half, cell) = self.cell_along(rows, ends(x, z));
-        let u = MirroredRoot::number(cell.place().t);
+        let place = cell.place();
+        let u = MirroredRoot::number(place.at / place.cells);
         // The other half ascends from u = 1.
         if half == 0 { u } else { 1.0 - u }
     }
@@ -244,13 +330,36 @@ impl Slices {
     }
 }
 
-/// The unit slopes of a normal up to a common factor, without a division.
-fn unit_slopes(view: &Stretched, sigma: [f32; 2], m: Vec3) -> UnitSlopes {
+/// The product of two quotients: one division in the end takes less time than one for each.
+#[inline(always)]
+fn times(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] * b[0], a[1] * b[1]]
+}
+
+/// The in-plane slope of a normal and its y across, up to a common factor, without a division.
+fn unit_slopes(view: &Stretched, sigma: [f32; 2], s: f32, m: Vec3) -> (InPlane, f64) {
     let [vx, vy, mx, my] = [view.x, view.y, m.x, m.y].map(f64::from);
     let [sx, sy] = sigma.map(f64::from);
     let (a, b) = (mx * sy, my * sx);
     let frame = sqrt64(vx * vx + vy * vy);
-    UnitSlopes { x: a * vx + b * vy, z: f64::from(m.z) * sx * sy * frame, y: b * vx - a * vy }
+    (InPlane::new(a * vx + b * vy, f64::from(m.z) * sx * sy * frame, s), b * vx - a * vy)
+}
+
+impl StudentTRef<'_> {
+    /// A visible normal, and its density where that is a by-product; `None` where the draw is not
+    /// the common one.
+    #[inline(always)]
+    pub(super) fn draw_with_density<const HEAVY: bool>(
+        &self,
+        v: Vec3,
+        u: [f32; 2],
+    ) -> Option<(Vec3, Option<f32>)> {
+        let Surface { shape, scales: Scales { sigma, .. } } = self.surface();
+        let view = self.surface().view::<HEAVY>(v);
+        let reads = Reads::new::<_, HEAVY>(shape, &view, u)?;
+        let m = first_three(draw_located::<_, HEAVY>(shape, &view, &reads, sigma, |m| m)?);
+        Some((m, shape.density_of_reads(&reads, view.at, sigma[0] * sigma[1], m.z)))
+    }
 }
 
 impl StudentT {

@@ -190,6 +190,14 @@ pub fn slope_at(g: f64) -> [f64; 2] {
     [2.0 * (1.0 - g), g * (2.0 - g)]
 }
 
+/// [`rate`] at [`slope_at`] g, as a quotient.
+#[inline]
+pub fn rate_at(g: f64) -> [f64; 2] {
+    // With z = g(2−g) = 1 − h², √(x² + z²) is 1 + h² = 2 − z.
+    let z = g * (2.0 - g);
+    [z * z, 4.0 - 2.0 * z]
+}
+
 /// A slope x : z in single precision, as lookups return it.
 #[derive(Clone, Copy, Debug)]
 pub struct Slope {
@@ -256,6 +264,8 @@ mod tests {
             let rise = half_tangent(x + step, 1.0) - half_tangent(x - step, 1.0);
             assert!((rise / (2.0 * step) - rate(x, 1.0)).abs() < 1e-9);
             assert_eq!(rate(x, 1.0), rate(2.0 * x, 2.0));
+            let [number, of] = rate_at(low.min(high));
+            assert!((number / of / rate(x, 1.0) - 1.0).abs() < 2e-15, "{x}");
         }
         assert_eq!([ends(1.0, 0.0), slope_at(0.0)], [[2.0, 0.0], [2.0, 0.0]]);
     }

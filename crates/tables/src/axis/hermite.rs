@@ -111,7 +111,7 @@ pub fn between_rows(low: &[Node], high: &[Node], cell: usize, w: f32) -> (Node, 
     (mix(a[0], b[0]), mix(a[1], b[1]))
 }
 
-/// A cubic on [0, 1] in double precision, for inverting [`hermite`].
+/// A cubic on [0, 1] in double precision, for inverting and differentiating [`hermite`].
 #[derive(Clone, Copy)]
 pub struct Cubic {
     c: [f64; 4],
@@ -124,6 +124,12 @@ impl Cubic {
         let [a0, a1, b0, b1] = [a[0], a[1], b[0], b[1]].map(f64::from);
         let rise = b0 - a0;
         Self { c: [a0, a1, 3.0 * rise - 2.0 * a1 - b1, a1 + b1 - 2.0 * rise] }
+    }
+
+    /// Of the coefficients of a cell.
+    #[inline]
+    pub fn of_cell(cell: &Cell) -> Self {
+        Self { c: cell.map(f64::from) }
     }
 
     /// Its value at w.

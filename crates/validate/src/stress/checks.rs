@@ -222,6 +222,8 @@ impl<L: Reflecting + Tabulated + Batch> Checker<'_, L> {
         let v = at.view();
         let m = Vec3::from(self.lobe.sample_visible_normal(v, at.u));
         self.unit_and_above(m, at);
+        let (same, drawn) = self.lobe.sample_with_table_pdf(v, at.u);
+        self.require(m == Vec3::from(same), "sample_with_table_pdf draws another normal", 0.0, at);
         let facing = v.as_dvec3().dot(m.as_dvec3());
         let seen = v.z < 0.0 || facing >= -ULP4;
         self.require(seen, "sampled normal faces away", facing, at);
@@ -237,8 +239,10 @@ impl<L: Reflecting + Tabulated + Batch> Checker<'_, L> {
         let (d, pdf, table) = (lobe.d(m), lobe.visible_normal_pdf(v, m), lobe.table_pdf(v, m));
         self.density(d, "d negative, NaN or inf", at);
         self.density(pdf, "visible_normal_pdf negative, NaN or inf", at);
-        self.density(table, "table_pdf negative, NaN or inf", at);
-        let divides = table > 0.0 || pdf == 0.0 || v.z <= 0.0;
+        for table in [table, drawn] {
+            self.density(table, "table_pdf negative, NaN or inf", at);
+        }
+        let divides = table.min(drawn) > 0.0 || pdf == 0.0 || v.z <= 0.0;
         self.require(divides, "table_pdf 0 at a drawn normal", pdf, at);
         let truth =
             [self.exact.d(m.as_dvec3()), self.exact.visible_normal_pdf(v.as_dvec3(), m.as_dvec3())];

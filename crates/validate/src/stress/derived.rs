@@ -39,9 +39,9 @@ impl<L: Reflecting + Tabulated + Batch> Checker<'_, L> {
         let sound = share > 0.0 && share <= 1.0;
         self.require(sound, "bounded share outside (0, 1]", share, &points[0]);
         for at in points {
-            let m = bounded.sample(at.u);
+            let (m, table) = bounded.sample_with_table_pdf(at.u);
             self.unit_and_above(m.into(), at);
-            for pdf in [bounded.visible_normal_pdf(m), bounded.table_pdf(m)] {
+            for pdf in [bounded.visible_normal_pdf(m), table] {
                 self.density(pdf, "bounded pdf negative, NaN or inf", at);
             }
         }

@@ -29,7 +29,7 @@ use super::views::View;
 use super::{first_three, pairs, pairs_of_firsts, sum, swap_pairs};
 use crate::material::heavy::Part;
 use crate::material::horizon::HORIZON;
-use crate::material::surface::{Shape, Surface};
+use crate::material::surface::{LANES, Shape, Surface};
 
 impl<S: Shape> Surface<S> {
     /// A visible normal, by the fast path where it serves and by the general path elsewhere.
@@ -48,7 +48,9 @@ impl<S: Shape> Surface<S> {
         if self.shape.peeled() {
             return self.sample_heavy(v, u);
         }
-        let m = draw_along::<S, false>(self.shape, &self.view::<false>(v), u, self.scales.sigma);
+        let view = self.view::<false>(v);
+        let m = Reads::new::<S, false>(self.shape, &view, u)
+            .and_then(|reads| draw_along::<S, false>(self.shape, &view, &reads, self.scales.sigma));
         m.map_or_else(|| self.general(v, u), |(m, _)| first_three(m))
     }
 
@@ -79,52 +81,92 @@ pub(crate) fn draw<S: Shape, const HEAVY: bool>(
     sigma: [f32; 2],
     to_tangent: impl FnOnce(f32x4) -> f32x4,
 ) -> Option<f32x4> {
-    let (m, shrink) = draw_along::<S, HEAVY>(shape, view, u, sigma)?;
+    let reads = Reads::new::<S, HEAVY>(shape, view, u)?;
+    draw_located::<S, HEAVY>(shape, view, &reads, sigma, to_tangent)
+}
+
+/// [`draw`] by reads that are known already.
+#[inline(always)]
+pub(crate) fn draw_located<S: Shape, const HEAVY: bool>(
+    shape: S,
+    view: &View,
+    reads: &Reads,
+    sigma: [f32; 2],
+    to_tangent: impl FnOnce(f32x4) -> f32x4,
+) -> Option<f32x4> {
+    let (m, shrink) = draw_along::<S, HEAVY>(shape, view, reads, sigma)?;
     let m = to_tangent(m);
     let m = m / sum(m * m).sqrt();
     let lowest = f32x4::new([-1.0, -1.0, HORIZON, 0.0]);
     Some(if HEAVY { (m * shrink).fast_max(lowest) } else { m })
 }
 
+/// Where a view and two random numbers read the tables. All places are in range.
+pub(crate) struct Reads {
+    /// Nodes along the plane of incidence, in the rows below and above the view, and where it is
+    /// between them.
+    pub(crate) low: usize,
+    pub(crate) high: usize,
+    pub(crate) between: f32,
+    /// The cell across the plane.
+    pub(crate) across: usize,
+    /// The coordinates along the plane and across it in cells, and in their cells.
+    pub(crate) t: f32x4,
+    pub(crate) w: [f32; LANES],
+    /// All ones where a number is above ½.
+    pub(crate) towards: f32x4,
+    /// The number within the heavy part, where that is drawn from.
+    pub(crate) tail: Option<f32>,
+}
+
+impl Reads {
+    /// `None` for NaN.
+    #[inline(always)]
+    pub(crate) fn new<S: Shape, const HEAVY: bool>(
+        shape: S,
+        view: &View,
+        u: [f32; 2],
+    ) -> Option<Self> {
+        let (row, between) = split(view.at);
+        let (row, between) = (row.to_array()[0] as u32, between.to_array()[0]);
+
+        // Both random numbers in two lanes: fourth roots, cells and positions.
+        let (mut along, mut tail) = (u[0], None);
+        if HEAVY && shape.peeled() {
+            match shape.part(along, view.at.to_array()[0]) {
+                Part::Tabulated(number) => along = number,
+                Part::Heavy(number) => tail = Some(number),
+            }
+        }
+        let u = f32x4::new([along, u[1], 0.0, 0.0]);
+        let [along_scale, across_scale] = shape.scales();
+        let t = roots(u) * f32x4::new([along_scale, across_scale, 0.0, 0.0]);
+        let (cell, w) = split(t);
+        let towards = u.simd_gt(0.5);
+        let half: i32x4 = bytemuck::cast(towards);
+        let cell = (cell + (half & i32x4::new([shape.half() as i32, 0, 0, 0]))).to_array();
+
+        // The guard cell makes the cell of every random number valid, and the guard row that of
+        // every view. NaN fails here or, where it converts to 0, in the test of g.
+        let stride = 2 * shape.half();
+        let low = start(row, stride, cell[0]);
+        let (high, across) = (low + stride as usize, cell[1] as u32 as usize);
+        let read = Self { low, high, between, across, t, w: w.to_array(), towards, tail };
+        shape.reads(high, across).then_some(read)
+    }
+}
+
 /// The normal of [`draw`] before `to_tangent`, with squares in range, and a factor
 /// on the normal after normalisation.
 #[inline(always)]
-pub(crate) fn draw_along<S: Shape, const HEAVY: bool>(
+fn draw_along<S: Shape, const HEAVY: bool>(
     shape: S,
-    view: &View,
-    u: [f32; 2],
+    &View { xy, frame, silhouette, .. }: &View,
+    reads: &Reads,
     [sx, sy]: [f32; 2],
 ) -> Option<(f32x4, f32x4)> {
-    let &View { xy, frame, at, silhouette, .. } = view;
-    let (row, between) = split(at);
-    let (row, between) = (row.to_array()[0] as u32, between.to_array()[0]);
-
-    // Both random numbers in two lanes: fourth roots, cells and positions.
-    let (mut along, mut tail) = (u[0], None);
-    if HEAVY && shape.peeled() {
-        match shape.part(along, at.to_array()[0]) {
-            Part::Tabulated(number) => along = number,
-            Part::Heavy(number) => tail = Some(number),
-        }
-    }
-    let u = f32x4::new([along, u[1], 0.0, 0.0]);
-    let [along_scale, across_scale] = shape.scales();
-    let t = roots(u) * f32x4::new([along_scale, across_scale, 0.0, 0.0]);
-    let (cell, w) = split(t);
-    let w = w.to_array();
-    let towards = u.simd_gt(0.5);
+    let &Reads { low, high, between, across, w, towards, tail, .. } = reads;
     let sign = towards & f32x4::splat(-0.0);
-    let half: i32x4 = bytemuck::cast(towards);
-    let cell = (cell + (half & i32x4::new([shape.half() as i32, 0, 0, 0]))).to_array();
-
-    // The guard cell makes the cell of every random number valid, and the guard row that of
-    // every view. NaN fails here or, where it converts to 0, in the test of g.
-    let stride = 2 * shape.half();
-    let low = start(row, stride, cell[0]);
-    let (high, across) = (low + stride as usize, cell[1] as u32 as usize);
-    if !shape.reads(high, across) {
-        return None;
-    }
 
     // The slope across, as the ratio 2 t : t_z; then the factors of the in-plane slope and of
     // its norm.
