@@ -93,7 +93,7 @@
 //! | get a lobe | [`Tables::student_t`], [`Tables::ellipsoid`], [`Tables::material`] by name, [`Ggx`] without tables |
 //! | evaluate and sample a lobe | [`MicrofacetDistribution`]: D, G1, visible normals; [`lobe::Reflecting`]: reflection off them; [`lobe::Batch`]: whole slices |
 //! | draw normals without tables, whatever γ | [`lobe::PseudoVisible`] |
-//! | lose fewer samples below the horizon | [`StudentT::bounded`] |
+//! | lose fewer samples below the horizon | [`StudentT::bounded`]; [`Lobe::for_reflection`] where it pays |
 //! | compensate multiple scattering yourself | [`Tables::albedo`], [`albedo::Albedo`] |
 //! | take σ from a texture | [`StudentT::with_roughness`], also of a bounded lobe; [`Ellipsoid::with_skew`] |
 //! | take σ and γ from textures | [`Tables::family`], [`Tables::family_albedo`], [`Tables::family_dielectric`]; `at_hit` of [`Conductor`], [`Dielectric`] and [`Plastic`] |
@@ -150,8 +150,8 @@ pub use tables::Tables;
 pub mod lobe {
     pub use crate::error::BatchError;
     pub use crate::material::{
-        Batch, Bounded, BoundedRef, BoundedView, EllipsoidRef, Facet, FamilyLobe, LobeKey,
-        PseudoVisible, Radial, Reflecting, Smooth, StudentTRef, Tabulated,
+        Batch, Bounded, BoundedFamilyLobe, BoundedRef, BoundedView, EllipsoidRef, Facet,
+        FamilyLobe, LobeKey, PseudoVisible, Radial, Reflecting, Smooth, StudentTRef, Tabulated,
     };
     pub use microfacet_core::{Roughness, SkewError};
 }

@@ -1,12 +1,17 @@
 //! Normals bounded for reflection: nothing that reflects upwards is lost, and estimates agree.
 
+use std::f32::consts::TAU;
+
 use glam::Vec3;
-use microfacet_sampler::lobe::Tabulated;
-use microfacet_sampler::{Masking, MicrofacetDistribution, StudentT, Tables};
+use microfacet_model::statistics::{chi_square, sidak};
+use microfacet_sampler::lobe::{Reflecting, Tabulated};
+use microfacet_sampler::{Ggx, Lobe, Masking, MicrofacetDistribution, StudentT, Tables};
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
 
 fn materials() -> impl Iterator<Item = StudentT> {
     let tables = Tables::embedded();
-    [1.55, 1.9, 3.0, f64::INFINITY].into_iter().flat_map(move |gamma| {
+    [1.501, 1.55, 1.7, 1.9, 3.0, f64::INFINITY].into_iter().flat_map(move |gamma| {
         let tables = tables.clone();
         [[0.4, 0.4], [1.5, 1.5], [0.2, 0.9]].map(|sigma| tables.student_t(sigma, gamma).unwrap())
     })
@@ -21,7 +26,7 @@ fn views() -> impl Iterator<Item = Vec3> {
 }
 
 fn reflect(v: Vec3, m: [f32; 3]) -> Vec3 {
-    let m = Vec3::from(m);
+    let m = Vec3::from(m).normalize();
     2.0 * v.dot(m) * m - v
 }
 
@@ -116,6 +121,155 @@ fn densities_are_those_of_visible_normals_over_the_share() {
             assert!((ratio - 1.0).abs() < 1e-6);
             let ratio = bounded.table_pdf(m) * bounded.share() / material.table_pdf(v, m);
             assert!((ratio - 1.0).abs() < 1e-6, "{v}");
+        }
+    }
+}
+
+/// Cells of lights by the root of their cosine, so that those next to the horizon are small, and by
+/// their azimuth.
+const RINGS: usize = 16;
+const AZIMUTHS: usize = 8;
+
+/// None below the horizon.
+fn cell(l: Vec3) -> Option<usize> {
+    let at = |x: f32, count: usize| ((x * count as f32) as usize).min(count - 1);
+    let turn = l.y.atan2(l.x) / TAU + 0.5;
+    (l.z > 0.0).then(|| at(l.z.sqrt(), RINGS) * AZIMUTHS + at(turn, AZIMUTHS))
+}
+
+/// p of the lights that are drawn, by their density.
+fn p_of_lights(drawn: &impl Reflecting, v: Vec3, random: &mut StdRng) -> f64 {
+    const DRAWS: usize = 50_000;
+    /// Points in a cell, each way. Of grazing views densities are narrow in azimuth.
+    const POINTS: [usize; 2] = [12, 64];
+    let mut expected = vec![0.0; RINGS * AZIMUTHS + 1];
+    let [rings, azimuths] = [RINGS * POINTS[0], AZIMUTHS * POINTS[1]];
+    for i in 0..rings {
+        let root = (i as f32 + 0.5) / rings as f32;
+        let z = root * root;
+        // dz dφ.
+        let patch = (2.0 * root / rings as f32) * (TAU / azimuths as f32);
+        for j in 0..azimuths {
+            let (sin, cos) = ((j as f32 + 0.5) / azimuths as f32 * TAU).sin_cos();
+            let r = (1.0 - z * z).sqrt();
+            let l = Vec3::new(r * cos, r * sin, z);
+            let (_, pdf) = drawn.eval_pdf(v, l, Masking::HeightCorrelated);
+            expected[cell(l).unwrap()] += DRAWS as f64 * f64::from(pdf * patch);
+        }
+    }
+    let (share, mut observed) = (drawn.reflecting_share(v), vec![0; expected.len()]);
+    for _ in 0..DRAWS {
+        let (m, of_draw) = drawn.sample_reflecting_normal(v, random.random());
+        assert_eq!(of_draw.to_bits(), share.to_bits());
+        observed[cell(reflect(v, m)).unwrap_or(expected.len() - 1)] += 1;
+    }
+    // All others are below the horizon; none where every normal reflects upwards.
+    let above: f64 = expected.iter().sum();
+    assert!(above < 1.002 * DRAWS as f64, "{v}: {above} of {DRAWS}");
+    *expected.last_mut().unwrap() = (DRAWS as f64 - above).max(1e-3);
+    chi_square(&observed, &expected).p
+}
+
+#[test]
+fn lights_are_drawn_by_their_density() {
+    let tables = Tables::embedded();
+    let family = tables.family().unwrap();
+    let mut random = StdRng::seed_from_u64(3);
+    let gammas = [1.501, 1.55, 1.6, 1.7, 1.79, 1.9, 3.0];
+    let level = sidak(1e-3, gammas.len() * 2 * 10 * 2);
+    for gamma in gammas {
+        for sigma in [[0.3, 0.3], [0.2, 0.9]] {
+            let bounded = tables.student_t(sigma, gamma).unwrap().bounded();
+            let per_hit = family.at(sigma, gamma as f32).bounded();
+            for v in views().filter(|v| v.z > 0.1) {
+                let p =
+                    [p_of_lights(&bounded, v, &mut random), p_of_lights(&per_hit, v, &mut random)];
+                assert!(p.iter().all(|&p| p > level), "{gamma} {sigma:?} {v}: {p:?}");
+            }
+        }
+    }
+}
+
+/// At views and numbers of all ends, of every lobe that is bounded.
+#[test]
+fn ends_give_normals_and_shares() {
+    let tables = Tables::embedded();
+    let family = tables.family().unwrap();
+    let check = |lobe: &dyn Fn(Vec3, [f32; 2]) -> ([f32; 3], f32), what: &str| {
+        for z in [1.0, 1.0 - 1e-7, 0.5, 1e-3, 1e-10, 1e-20, 1e-38, 0.0, -0.5_f32] {
+            let r = (1.0 - z * z).sqrt();
+            for v in [Vec3::new(r, 0.0, z), Vec3::new(-0.6 * r, 0.8 * r, z)] {
+                for u in [0.0, 1e-9, 0.5, 1.0_f32.next_down(), 1.0] {
+                    let (m, share) = lobe(v, [u, 1.0 - u]);
+                    assert!(share > 0.0 && share <= 1.0, "{what} {v} {u}: {share}");
+                    let m = Vec3::from(m).normalize();
+                    let faces = z < 0.0 || v.dot(m) > -5e-7;
+                    assert!(m.is_finite() && m.z > 0.0 && faces, "{what} {v} {u}: {m}");
+                }
+            }
+        }
+        let (m, share) = lobe(Vec3::NAN, [0.5, f32::NAN]);
+        assert!(m.iter().all(|x| !x.is_infinite()) && !share.is_infinite(), "{what}");
+    };
+    for gamma in [1.501, 1.6, 1.79, 1.9, 4.0] {
+        for sigma in [1e-8, 1e-3, 0.5, 1e6] {
+            let what = format!("{gamma} {sigma}");
+            let bounded = tables.student_t(sigma, gamma).unwrap().bounded();
+            check(&|v, u| bounded.sample_reflecting_normal(v, u), &what);
+            let per_hit = family.at(sigma, gamma as f32).bounded();
+            check(&|v, u| per_hit.sample_reflecting_normal(v, u), &what);
+        }
+    }
+}
+
+/// The mean over views of the variance of a weight in a white furnace.
+fn furnace(lobe: &StudentT, draw: impl Fn(Vec3, [f32; 2]) -> ([f32; 3], f64)) -> f64 {
+    const VIEWS: u16 = 12;
+    let of_view = |i: u16| {
+        let z = (f32::from(i) + 0.5) / f32::from(VIEWS);
+        let v = Vec3::new((1.0 - z * z).sqrt(), 0.0, z);
+        let n = 64;
+        let (mut mean, mut square) = (0.0, 0.0);
+        for u in grid(n) {
+            let (m, factor) = draw(v, u);
+            let w = weight(lobe, v, m) * factor;
+            (mean, square) = (mean + w / f64::from(n * n), square + w * w / f64::from(n * n));
+        }
+        square - mean * mean
+    };
+    (0..VIEWS).map(of_view).sum::<f64>() / f64::from(VIEWS)
+}
+
+#[test]
+fn below_two_bounded_normals_vary_less_than_those_of_ggx_with_weights() {
+    let tables = Tables::embedded();
+    let family = tables.family().unwrap();
+    for gamma in [1.51, 1.6, 1.7, 1.79, 1.9] {
+        for sigma in [0.1_f32, 0.3, 0.5] {
+            let lobe = tables.student_t(sigma, gamma).unwrap();
+            let of = |drawn: &dyn Fn(Vec3, [f32; 2]) -> ([f32; 3], f32)| {
+                furnace(&lobe, |v, u| {
+                    let (m, share) = drawn(v, u);
+                    (m, share.into())
+                })
+            };
+            let visible = of(&|v, u| lobe.sample_reflecting_normal(v, u));
+            let chosen = Lobe::from(lobe.clone()).for_reflection();
+            let bounded = of(&|v, u| chosen.sample_reflecting_normal(v, u));
+            let per_hit = family.at(sigma, gamma as f32).bounded();
+            let per_hit = of(&|v, u| per_hit.sample_reflecting_normal(v, u));
+            let weighted = [0.9, 1.0, 1.2].map(|wider| {
+                let ggx = Ggx::new(sigma * wider).unwrap();
+                furnace(&lobe, |v, u| {
+                    let m = ggx.sample_visible_normal(v, u);
+                    let ratio = lobe.visible_normal_pdf(v, m) / ggx.visible_normal_pdf(v, m);
+                    (m, ratio.into())
+                })
+            });
+            let all = format!("{gamma} {sigma}: {visible} {bounded} {per_hit} {weighted:?}");
+            assert!(weighted.iter().all(|&weighted| bounded < 0.9 * weighted), "{all}");
+            let most = if gamma < 1.75 { 0.6 } else { 0.75 };
+            assert!(bounded < 0.6 * visible && (per_hit < most * visible || gamma > 1.8), "{all}");
         }
     }
 }

@@ -63,12 +63,15 @@ fn check(name: &str, lobe: &impl MicrofacetDistribution) {
 #[test]
 fn facets_are_those_of_the_separate_functions() {
     let tables = Tables::embedded();
+    let family = tables.family().unwrap();
     for sigma in [[0.5, 0.5], [0.02, 0.3], [5.0, 1.0]] {
         check("ggx", &Ggx::new(sigma).unwrap());
         for gamma in [1.501, 1.7, 1.8, 2.0, 2.3, 4.0, 40.0, 1e4, f64::INFINITY] {
             let lobe = tables.student_t(sigma, gamma).unwrap();
             check(&format!("{sigma:?} {gamma}"), &lobe);
             check(&format!("bounded {sigma:?} {gamma}"), &lobe.bounded());
+            let per_hit = family.at(sigma, gamma as f32).bounded();
+            check(&format!("bounded per hit {sigma:?} {gamma}"), &per_hit);
         }
     }
     // Upright, tilted, and tilted so far that views lie below the lobe's horizon.

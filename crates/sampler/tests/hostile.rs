@@ -4,7 +4,7 @@
 use glam::Vec3;
 
 use microfacet_core::shape::gamma_of_s;
-use microfacet_sampler::lobe::Batch;
+use microfacet_sampler::lobe::{Batch, Reflecting};
 use microfacet_sampler::{Ggx, Lobe, Masking, MaterialError, MicrofacetDistribution, Skew, Tables};
 use microfacet_tables::axis::{HalfTangent, Rational};
 use microfacet_tables::{
@@ -356,6 +356,7 @@ fn directions_and_numbers_out_of_their_domain_are_answered() {
 #[test]
 fn random_numbers_are_clamped() {
     let tables = Tables::embedded();
+    let family = tables.family().unwrap();
     let ends = [(f32::NAN, 0.0), (f32::NEG_INFINITY, 0.0), (-1e-9, 0.0), (1.001, 1.0)];
     let ends = ends.into_iter().chain([(f32::INFINITY, 1.0), (2.0, 1.0)]);
     let pairs = |x: f32| [[x, 0.3], [0.3, x], [x, x]];
@@ -387,6 +388,10 @@ fn random_numbers_are_clamped() {
                     }
                     let bounded = bounded_lobe.at(v);
                     assert_eq!(bounded.sample(u), bounded.sample(clamped), "{gamma} {v} {u:?}");
+                    let per_hit = family.at(0.5, gamma as f32).bounded();
+                    let [odd, of_end] =
+                        [u, clamped].map(|u| per_hit.sample_reflecting_normal(v, u));
+                    assert_eq!(odd, of_end, "{gamma} {v} {u:?}");
                 }
             }
             let albedo = tables.albedo(0.5, 3.0, Masking::Uncorrelated).unwrap();

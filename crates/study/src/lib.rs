@@ -12,6 +12,7 @@ pub mod dielectric_views;
 pub mod ellipsoid_cost;
 pub mod ellipsoid_note;
 pub mod engines;
+pub mod frame_time;
 pub mod merl;
 pub mod planned;
 pub mod printed_formulas;
@@ -51,7 +52,7 @@ const fn study(name: &'static str, what: &'static str, run: fn(&[String]) -> Out
 }
 
 /// All studies, by name.
-pub const STUDIES: [Study; 20] = [
+pub const STUDIES: [Study; 21] = [
     study(
         "albedo_convergence",
         "error against time of one directional albedo",
@@ -72,6 +73,7 @@ pub const STUDIES: [Study; 20] = [
     study("ellipsoid_cost", "time of a normal of an ellipsoid", ellipsoid_cost::run),
     study("ellipsoid_note", "the claims of the Ellipsoid note", ellipsoid_note::run),
     study("engines", "errors of the albedos that engines ship [FOLDER]", engines::run),
+    study("frame_time", "time to picture of textured gold beside GGX; --help", frame_time::run),
     study("merl", "makes files in the format of the MERL database [--start] FOLDER", merl::run),
     study("planned", "what bakes take next to what is planned [RECIPE ...]", planned::run),
     study(

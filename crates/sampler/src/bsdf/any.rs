@@ -116,8 +116,9 @@ impl Tables {
     /// The BSDF of a named material of the set's recipe: its lobe, reflectance and form of masking.
     ///
     /// `fresnel = "mirror"`, `schlick`, `conductor` and `metal` make a [`Conductor`], `dielectric`
-    /// a [`Dielectric`], never a [`Plastic`], whose base no recipe states. Ranges are taken at
-    /// their middle, see [`material`](Self::material).
+    /// a [`Dielectric`], never a [`Plastic`], whose base no recipe states. Conductors draw what is
+    /// best [for reflection](Lobe::for_reflection). Ranges are taken at their middle, see
+    /// [`material`](Self::material).
     ///
     /// # Errors
     /// [`BindError::NoFresnel`] for a material that states no reflectance, [`BindError::NoAlbedo`]
@@ -145,6 +146,6 @@ impl Tables {
                 return Ok(Dielectric::new(lobe, eta, settings)?.into());
             }
         };
-        Ok(Conductor::new(lobe, reflectance, settings)?.into())
+        Ok(Conductor::new(lobe.for_reflection(), reflectance, settings)?.into())
     }
 }

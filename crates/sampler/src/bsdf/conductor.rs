@@ -18,7 +18,9 @@ use crate::vector::vec3;
 /// Conventions are those of [`Bsdf`]. Single scattering is D F G2/(4 cos θ_v cos θ_l) (Cook &
 /// Torrance 1982, <https://doi.org/10.1145/357290.357293>), sampled by visible normals: its weight
 /// F·G2/G1 is at most 1. A compensation adds the light of further bounces. Black from below.
-/// With a [`Bounded`](crate::lobe::Bounded) lobe fewer samples are lost.
+/// It draws by the lobe that it is given: with a [`Bounded`](crate::lobe::Bounded) one fewer samples
+/// are lost, many fewer for γ < 2, where [`Lobe::for_reflection`](crate::Lobe::for_reflection)
+/// chooses it, and at a hit [`FamilyLobe::bounded`](crate::lobe::FamilyLobe::bounded).
 #[derive(Clone, Debug)]
 pub struct Conductor<L, const N: usize = 3, A = Albedo> {
     lobe: L,

@@ -101,6 +101,20 @@ impl Tail {
         let large = zeta.fast_max(f32x4::splat(LEAST));
         [x * 0.5, large * self.root_s, zeta / large]
     }
+
+    /// The number of the slope x : z of the heavy part, x > 0, z ≥ 0: the share of its slopes that
+    /// are steeper, to 1e-7 absolute.
+    #[inline(always)]
+    pub(crate) fn number_above(&self, x: f32x4, z: f32x4) -> f32x4 {
+        /// Of steeper slopes the square is out of range; the number counts as 0.
+        const STEEPEST: f32 = 1e18;
+        let slope = (x / z).fast_min(f32x4::splat(STEEPEST));
+        let scaled = slope * self.root_s;
+        // (1 + s x²)^(−k), with the exponent 1/2k.
+        let power = -0.5 / self.exponent;
+        let number = exp2(log2(1.0 + scaled * scaled) * power);
+        slope.simd_lt(STEEPEST) & number
+    }
 }
 
 /// A random number along the plane of incidence, within the part of the distribution that it
@@ -160,6 +174,7 @@ pub(crate) fn parts_of_areas(u: f32x4, heavy: f32x4, rest: f32x4) -> [f32x4; 2] 
 #[cfg(test)]
 mod tests {
     use glam::Vec3;
+    use wide::f32x4;
 
     use crate::material::surface::Shape as _;
     use crate::{MicrofacetDistribution, Tables};
@@ -177,6 +192,27 @@ mod tests {
             }
         }
         assert!(worst < 4e-6, "{worst:e}");
+    }
+
+    #[test]
+    fn numbers_above_slopes_are_those_that_draw_them() {
+        for gamma in [1.501, 1.55, 1.6, 1.79] {
+            let tail = Tables::embedded().student_t(1.0, gamma).unwrap().slices.heavy.tail;
+            let number =
+                |x: f32, z: f32| tail.number_above(f32x4::splat(x), f32x4::splat(z)).to_array()[0];
+            for i in 0..=1000 {
+                let exact = i as f32 / 1000.0;
+                let [half, z, factor] = tail.half_slopes(f32x4::splat(exact)).map(|x| x.to_array());
+                let slope = [2.0 * half[0], z[0] * factor[0]];
+                // Cosines that are as good as 0 are of slopes that no view reflects upwards.
+                if slope[1] > 1e-18 {
+                    let got = number(slope[0], slope[1]);
+                    // Of the smallest slopes the number is 1 to rounding.
+                    assert!((got - exact).abs() < 4e-7, "{gamma}: {got} for {exact}");
+                }
+            }
+            assert_eq!([number(1.0, 0.0), number(1e30, 1e-30), number(0.0, 1.0)], [0.0, 0.0, 1.0]);
+        }
     }
 
     #[test]

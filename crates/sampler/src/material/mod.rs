@@ -6,7 +6,8 @@
 //! ([`coverage`]); [`lanes`] are its lookups in SIMD, with the part that no table holds from
 //! [`heavy`], and [`horizon`] corrects normals that rounding has moved out of their domain.
 //! [`normals`] is D in closed form, with a [`power_table`] for its power. [`table_pdf`] is the
-//! density of what is drawn, and [`bounded`] leaves out normals that cannot reflect. [`ellipsoid`]
+//! density of what is drawn; [`bounded`] leaves out normals that cannot reflect a view [`upward`].
+//! [`ellipsoid`]
 //! transforms directions by a [`matrix`] to a Student-t, and draws by rejection for views
 //! [`below_horizon`]; [`radial`] has tables of its own, and [`ggx`], the [`smooth`] surface and
 //! [`pseudo`]-visible normals need none. [`key`] identifies a lobe to albedo tables, and [`shape`]
@@ -42,13 +43,14 @@ mod student_t;
 mod surface;
 mod table_pdf;
 mod tabulated;
+mod upward;
 mod windows;
 
 pub use batch::Batch;
 pub use bounded::{Bounded, BoundedRef, BoundedView};
 pub use distribution::{Facet, MicrofacetDistribution};
 pub use ellipsoid::{Ellipsoid, EllipsoidRef};
-pub use family::{Family, FamilyLobe};
+pub use family::{BoundedFamilyLobe, Family, FamilyLobe};
 pub use ggx::Ggx;
 pub use key::LobeKey;
 pub use lobe::Lobe;

@@ -108,9 +108,10 @@ fn check_set_to(tolerance: f32, name: &str, bsdf: &impl Bsdf) {
 fn reflection_off_a_lobe_is_that_of_a_white_conductor() {
     let tables = Tables::embedded();
     let skew = Skew::new([0.3, 0.1], [0.2, -0.1, 0.5]).unwrap();
-    let lobes: [Lobe; 5] = [
+    let lobes: [Lobe; 6] = [
         tables.student_t([0.4, 0.25], 2.6).unwrap().into(),
         tables.student_t(0.5, 1.6).unwrap().into(),
+        tables.student_t([0.5, 0.3], 1.6).unwrap().bounded().into(),
         tables.student_t(0.7, f64::INFINITY).unwrap().bounded().into(),
         tables.ellipsoid(skew, 2.2).unwrap().into(),
         Ggx::new(0.4).unwrap().into(),

@@ -10,7 +10,7 @@ mod figures;
 mod page;
 mod path;
 mod random;
-mod scene;
+pub(crate) mod scene;
 pub mod sky;
 #[cfg(test)]
 mod tests;
@@ -29,7 +29,7 @@ use rayon::prelude::*;
 use figures::{Figure, Spheres};
 use path::Tracer;
 use random::Random;
-use scene::{Ray, Scene};
+use scene::{Material, Ray, Scene};
 
 use microfacet_baker::progress::Meter;
 
@@ -57,14 +57,14 @@ struct Arguments {
 
 /// When a pixel is done.
 #[derive(Args, Clone, Copy)]
-struct Limit {
+pub(crate) struct Limit {
     /// Most paths in a pixel: a limit of the time
     #[arg(long, default_value = "4096",
           value_parser = clap::value_parser!(u32).range(1..=i64::from(Random::MOST)))]
-    samples: u32,
+    pub(crate) samples: u32,
     /// Standard error at which a pixel is done, in steps of 1/255; 0 takes all samples
     #[arg(long, default_value = "3", value_parser = steps)]
-    noise: f32,
+    pub(crate) noise: f32,
 }
 
 fn steps(text: &str) -> Result<f32, String> {
@@ -77,14 +77,14 @@ const BATCH: u32 = 64;
 
 /// Size and sampling of a sphere's square.
 #[derive(Clone, Copy)]
-struct Film {
-    cell: usize,
-    limit: Limit,
+pub(crate) struct Film {
+    pub(crate) cell: usize,
+    pub(crate) limit: Limit,
     /// As of [`Spheres`].
-    is_linear: bool,
+    pub(crate) is_linear: bool,
 }
 
-fn pixel(scene: &Scene, [x, y]: [usize; 2], film: Film) -> Vec3 {
+fn pixel<M: Material>(scene: &Scene<M>, [x, y]: [usize; 2], film: Film) -> Vec3 {
     let Film { cell, limit, is_linear } = film;
     let (sin, cos) = ELEVATION.sin_cos();
     let (up, direction) = (Vec3::new(0.0, cos, -sin), Vec3::new(0.0, -sin, -cos));
@@ -111,7 +111,11 @@ fn pixel(scene: &Scene, [x, y]: [usize; 2], film: Film) -> Vec3 {
 }
 
 /// All pixels, line by line of each square, on all cores.
-fn render(scenes: &[Scene], film: Film, meter: &Meter) -> Vec<Vec<Vec3>> {
+pub(crate) fn render<M: Material>(
+    scenes: &[Scene<M>],
+    film: Film,
+    meter: &Meter,
+) -> Vec<Vec<Vec3>> {
     let cell = film.cell;
     meter.expect(1.0);
     let stage = meter.stage(1.0);

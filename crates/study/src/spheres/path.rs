@@ -4,10 +4,9 @@
 //! <https://doi.org/10.1145/97879.97886>).
 
 use glam::Vec3;
-use microfacet_sampler::{Bsdf, Transport};
 
 use crate::spheres::random::Random;
-use crate::spheres::scene::{Ray, Scene};
+use crate::spheres::scene::{Material, Ray, Scene};
 
 /// A diamond reflects some 83 % from inside, so that paths of this length lose 1e-8 of the light.
 const MOST_BOUNCES: usize = 100;
@@ -15,12 +14,12 @@ const MOST_BOUNCES: usize = 100;
 const ROULETTE: usize = 4;
 
 /// Follows light backwards from the camera.
-pub(crate) struct Tracer<'a> {
-    pub(crate) scene: &'a Scene,
+pub(crate) struct Tracer<'a, M> {
+    pub(crate) scene: &'a Scene<M>,
     pub(crate) random: &'a mut Random,
 }
 
-impl Tracer<'_> {
+impl<M: Material> Tracer<'_, M> {
     /// An estimate of the radiance that arrives along a ray from the camera.
     pub(crate) fn radiance(&mut self, ray: &Ray) -> Vec3 {
         self.arriving(ray, f32::INFINITY, Vec3::ONE, 0)
@@ -42,7 +41,7 @@ impl Tracer<'_> {
         // Next-event estimation: directions towards the lamps, which the BSDF evaluates.
         for towards in sky.sample(self.random.two()) {
             let l = hit.frame.transpose() * towards;
-            let (f, of_bsdf) = hit.bsdf.eval_pdf(v, l, Transport::Radiance);
+            let (f, of_bsdf) = hit.bsdf.eval_pdf(v, l);
             let shadow = Ray { origin: hit.point, direction: towards };
             if f != [0.0; 3] && !self.scene.is_shadowed(&shadow) {
                 // f next to the horizon may be the largest number: the division comes first, to
@@ -54,7 +53,7 @@ impl Tracer<'_> {
 
         // The next ray, drawn by the BSDF.
         let (choice, u) = (self.random.one(), self.random.two());
-        let Some((next, pdf)) = hit.bsdf.sample_with_pdf(v, choice, u, Transport::Radiance) else {
+        let Some((next, pdf)) = hit.bsdf.sample_with_pdf(v, choice, u) else {
             return radiance;
         };
         if bounces == MOST_BOUNCES {

@@ -6,7 +6,7 @@ use glam::{Mat3, Vec3};
 
 use microfacet_report::tangent_frame;
 use microfacet_sampler::lobe::Smooth;
-use microfacet_sampler::{AnyBsdf, BindError, BsdfSettings, Plastic};
+use microfacet_sampler::{AnyBsdf, BindError, Bsdf, BsdfSample, BsdfSettings, Plastic, Transport};
 
 use crate::spheres::sky::Sky;
 
@@ -24,28 +24,74 @@ pub(crate) struct Ray {
     pub(crate) direction: Vec3,
 }
 
-pub(crate) struct Hit<'a> {
+pub(crate) struct Hit<'a, B> {
     pub(crate) point: Vec3,
     /// Tangent, bitangent and normal as columns: from the tangent frame to the world.
     pub(crate) frame: Mat3,
-    pub(crate) bsdf: &'a AnyBsdf,
+    pub(crate) bsdf: HitBsdf<'a, B>,
+}
+
+/// The BSDF of a hit: one that is kept, or one that was made for it of textures.
+pub(crate) enum HitBsdf<'a, B> {
+    Kept(&'a AnyBsdf),
+    Made(B),
+}
+
+impl<B: Bsdf> HitBsdf<'_, B> {
+    pub(crate) fn eval_pdf(&self, v: Vec3, l: Vec3) -> ([f32; 3], f32) {
+        match self {
+            Self::Kept(bsdf) => bsdf.eval_pdf(v, l, Transport::Radiance),
+            Self::Made(bsdf) => bsdf.eval_pdf(v, l, Transport::Radiance),
+        }
+    }
+
+    pub(crate) fn sample_with_pdf(
+        &self,
+        v: Vec3,
+        choice: f32,
+        u: [f32; 2],
+    ) -> Option<(BsdfSample, f32)> {
+        match self {
+            Self::Kept(bsdf) => bsdf.sample_with_pdf(v, choice, u, Transport::Radiance),
+            Self::Made(bsdf) => bsdf.sample_with_pdf(v, choice, u, Transport::Radiance),
+        }
+    }
+}
+
+/// What a sphere is made of.
+pub(crate) trait Material: Sync {
+    /// A BSDF that is made at a hit.
+    type Made<'a>: Bsdf
+    where
+        Self: 'a;
+
+    /// The BSDF at a point of the unit sphere.
+    fn at(&self, point: Vec3) -> HitBsdf<'_, Self::Made<'_>>;
+}
+
+impl Material for AnyBsdf {
+    type Made<'a> = Self;
+
+    fn at(&self, _point: Vec3) -> HitBsdf<'_, Self> {
+        HitBsdf::Kept(self)
+    }
 }
 
 /// A sphere of a material, and what lights it.
-pub(crate) struct Scene {
-    pub(crate) material: AnyBsdf,
+pub(crate) struct Scene<M = AnyBsdf> {
+    pub(crate) material: M,
     /// Under the sphere, if it lies on one.
     pub(crate) floor: Option<Floor>,
     pub(crate) sky: Sky,
 }
 
-impl Scene {
-    pub(crate) fn hit(&self, ray: &Ray) -> Option<Hit<'_>> {
+impl<M: Material> Scene<M> {
+    pub(crate) fn hit(&self, ray: &Ray) -> Option<Hit<'_, M::Made<'_>>> {
         let Ray { origin, direction } = *ray;
         if let Some(t) = sphere(ray) {
             let n = (origin + t * direction).normalize();
             // Brushed round the vertical axis.
-            return Some(Hit { point: n, frame: tangent_frame(n), bsdf: &self.material });
+            return Some(Hit { point: n, frame: tangent_frame(n), bsdf: self.material.at(n) });
         }
         let floor = self.floor.as_ref()?;
         let t = (FLOOR - origin.y) / direction.y;
@@ -54,7 +100,7 @@ impl Scene {
         }
         let point = origin + t * direction;
         let square = (point.x / SQUARE).floor() + (point.z / SQUARE).floor();
-        let bsdf = &floor.0[square.rem_euclid(2.0) as usize];
+        let bsdf = HitBsdf::Kept(&floor.0[square.rem_euclid(2.0) as usize]);
         Some(Hit { point, frame: Mat3::from_cols(Vec3::X, -Vec3::Z, Vec3::Y), bsdf })
     }
 

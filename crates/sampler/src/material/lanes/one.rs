@@ -36,7 +36,7 @@ impl<S: Shape> Surface<S> {
     #[inline(always)]
     pub(crate) fn sample(self, v: Vec3, u: [f32; 2]) -> Vec3 {
         if self.shape.peeled() {
-            return self.sample_heavy(v, u);
+            return self.sample_heavy(v, &self.view::<true>(v), u);
         }
         let m = draw::<S, false>(self.shape, &self.view::<false>(v), u, self.scales.sigma, |m| m);
         m.map_or_else(|| self.general(v, u), first_three)
@@ -46,7 +46,7 @@ impl<S: Shape> Surface<S> {
     #[inline(always)]
     pub(crate) fn sample_along(self, v: Vec3, u: [f32; 2]) -> Vec3 {
         if self.shape.peeled() {
-            return self.sample_heavy(v, u);
+            return self.sample_heavy(v, &self.view::<true>(v), u);
         }
         let view = self.view::<false>(v);
         let m = Reads::new::<S, false>(self.shape, &view, u)
@@ -54,10 +54,10 @@ impl<S: Shape> Surface<S> {
         m.map_or_else(|| self.general(v, u), |(m, _)| first_three(m))
     }
 
-    /// [`sample`](Self::sample) of a shape with a heavy part.
+    /// [`sample`](Self::sample) of a shape with a heavy part, along a view that is located.
     #[inline(always)]
-    fn sample_heavy(self, v: Vec3, u: [f32; 2]) -> Vec3 {
-        let m = draw::<S, true>(self.shape, &self.view::<true>(v), u, self.scales.sigma, |m| m);
+    pub(crate) fn sample_heavy(self, v: Vec3, view: &View, u: [f32; 2]) -> Vec3 {
+        let m = draw::<S, true>(self.shape, view, u, self.scales.sigma, |m| m);
         m.map_or_else(|| self.general(v, u), first_three)
     }
 
