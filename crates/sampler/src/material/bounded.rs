@@ -17,21 +17,21 @@ use alloc::vec::Vec;
 use glam::Vec3;
 use microfacet_core::math::unit;
 use microfacet_core::{Masking, Roughness};
+use microfacet_lanes::{Ints, Lanes, Work, f32x4, widest};
 use microfacet_tables::axis::hermite::split;
-use wide::f32x4;
 
 use super::batch::Batch;
 use super::delegate::{by_ref, forward};
 use super::distribution::{Facet, MicrofacetDistribution};
 use super::key::LobeKey;
 use super::lanes::first_three;
-use super::lanes::four::{coefficients, sample_general, transpose};
+use super::lanes::many::{components, sample_general};
 use super::lanes::one::draw;
 use super::lanes::views::{View, Views};
 use super::reflecting::Reflecting;
 use super::slices::Slices;
 use super::student_t::{StudentT, StudentTRef};
-use super::surface::{LANES, Scales, Shape, Surface};
+use super::surface::{Scales, Shapes, Surface};
 use super::tabulated::Tabulated;
 use crate::error::{BatchError, same_lengths};
 use crate::vector::vec3;
@@ -226,7 +226,7 @@ impl<'a> BoundedRef<'a> {
         let View { rho, z, at, .. } = view;
         let sin = f32x4::splat(v.x * v.x + v.y * v.y).sqrt();
         let [from, share] = self.intervals(rho, z, sin, at, |group, cells| {
-            let limit = |i: usize| f32x4::splat(self.limit(group.at(0), cells[i].at(0), i));
+            let limit = |i: usize| f32x4::splat(self.limit(group.first(), cells[i].first(), i));
             [limit(0), limit(1)]
         });
         let [from, share] = [from, share].map(|x| x.to_array()[0]);
@@ -247,20 +247,14 @@ impl<'a> BoundedRef<'a> {
     ) -> Result<(), BatchError> {
         same_lengths(&[("v", v.len()), ("u", u.len()), ("m", m.len()), ("share", share.len())])?;
         /// Enough to fill the lanes, and few enough to stay in the first cache.
-        const BLOCK: usize = 32;
+        const BLOCK: usize = 64;
         let blocks = v.chunks(BLOCK).zip(u.chunks(BLOCK));
         for (((v, u), m), share) in blocks.zip(m.chunks_mut(BLOCK)).zip(share.chunks_mut(BLOCK)) {
             let mut numbers = [[0.0; 2]; BLOCK];
             let numbers = &mut numbers[..v.len()];
-            let ((v4, v_rest), (u4, u_rest)) = (v.as_chunks::<LANES>(), u.as_chunks::<LANES>());
-            let ((n4, n_rest), (s4, s_rest)) =
-                (numbers.as_chunks_mut::<LANES>(), share.as_chunks_mut::<LANES>());
-            for (((v, u), n), share) in v4.iter().zip(u4).zip(n4).zip(s4) {
-                let [from, length] = self.intervals_of(transpose(v));
-                *share = length.to_array();
-                let from = from.to_array();
-                *n = core::array::from_fn(|i| [within(from[i], share[i], u[i][0]), u[i][1]]);
-            }
+            let narrowed = Narrowed { lobe: *self, v, u, numbers, share };
+            let Narrowed { v: v_rest, u: u_rest, numbers: n_rest, share: s_rest, .. } =
+                widest(narrowed).groups::<f32x4>();
             for (((v, u), n), share) in v_rest.iter().zip(u_rest).zip(n_rest).zip(s_rest) {
                 let at = self.at(*v);
                 *share = at.share;
@@ -284,31 +278,40 @@ impl<'a> BoundedRef<'a> {
         (low + w * (high - low)).clamp(0.0, 1.0)
     }
 
+    /// [`limit`](Self::limit) of views in lanes, at the slopes of both ends.
     #[inline(always)]
-    fn intervals_of(&self, [vx, vy, vz]: [f32x4; 3]) -> [f32x4; 2] {
+    fn limits<L: Lanes>(&self, row: Nodes<L>, cells: [Nodes<L>; 2]) -> [L; 2] {
+        let (rows, w) = (row.node.to_array(), row.weight.to_array());
+        let (low, low_w) = (cells[0].node.to_array(), cells[0].weight.to_array());
+        let (high, high_w) = (cells[1].node.to_array(), cells[1].weight.to_array());
+        [
+            L::from_fn(|i| self.limit((rows[i], w[i]), (low[i], low_w[i]), 0)),
+            L::from_fn(|i| self.limit((rows[i], w[i]), (high[i], high_w[i]), 1)),
+        ]
+    }
+
+    #[inline(always)]
+    fn intervals_of<L: Lanes>(&self, [vx, vy, vz]: [L; 3]) -> [L; 2] {
         let Surface { shape: slices, scales } = self.lobe.surface();
         let [sx, sy] = scales.sigma;
         let Views { rho, z, length, .. } = Views::new(vx * sx, vy * sy, vz);
-        let [at, _] = slices.place::<true>(rho, z, length);
-        self.intervals(rho, z, (vx * vx + vy * vy).sqrt(), at, |group, cells| {
-            [0, 1].map(|end| {
-                f32x4::new(core::array::from_fn(|i| self.limit(group.at(i), cells[end].at(i), end)))
-            })
-        })
+        let [at, _] = slices.place::<true, L>(rho, z, length);
+        let sin = (vx * vx + vy * vy).sqrt();
+        self.intervals(rho, z, sin, at, |row, cells| self.limits(row, cells))
     }
 
     /// The start and the length of the intervals of u₁ that hold all numbers at which lights can be
     /// above the horizon, for views with stretched horizontal length ρ and coordinate `at`;
     /// `limits` reads the limits at rows and at the slopes of both ends.
     #[inline(always)]
-    fn intervals(
+    fn intervals<L: Lanes>(
         &self,
-        rho: f32x4,
-        cos: f32x4,
-        sin: f32x4,
-        at: f32x4,
-        limits: impl FnOnce(Nodes, [Nodes; 2]) -> [f32x4; 2],
-    ) -> [f32x4; 2] {
+        rho: L,
+        cos: L,
+        sin: L,
+        at: L,
+        limits: impl FnOnce(Nodes<L>, [Nodes<L>; 2]) -> [L; 2],
+    ) -> [L; 2] {
         let Surface { shape: slices, scales } = self.lobe.surface();
         let group = Nodes::new(at * (1.0 / SHARED as f32));
         // tan θ ∓ 1/cos θ, the nearer end without cancellation, in slopes along the view's azimuth,
@@ -316,17 +319,13 @@ impl<'a> BoundedRef<'a> {
         // and the azimuth is that of x.
         const LITTLE: f32 = 1e-25;
         let (across, rho) = (sin + LITTLE, rho + LITTLE * scales.sigma[0]);
-        let cells = [(-cos, 1.0 + sin), (1.0 + sin, cos)].map(|(x, z)| {
-            let (x, z) = (x * across, z * rho);
-            let half = 0.5 * CELLS as f32;
-            Nodes::new(x * half / (x.abs() + z) + half)
-        });
-        let [low, high] = limits(group, cells);
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let least = Nodes::of_slope((zero - cos) * across, (sin + 1.0) * rho);
+        let [low, high] = limits(group, [least, Nodes::of_slope((sin + 1.0) * across, cos * rho)]);
         if slices.peeled {
             // Only the tabulated part has slopes away from the viewer, and it comes first.
-            let share = slices.heavy.shares(at, coefficients);
-            let low = low * (1.0 - share).fast_max(f32x4::ZERO);
-            return [low, 1.0 - low];
+            let low = low * (one - slices.heavy.shares(at)).fast_max(zero);
+            return [low, one - low];
         }
         [low, high - low]
     }
@@ -375,23 +374,73 @@ impl Tabulated for BoundedRef<'_> {
     }
 }
 
-/// Nodes below four coordinates, and the weights of the next nodes.
+/// Nodes below coordinates, and the weights of the next nodes.
 #[derive(Clone, Copy)]
-struct Nodes {
-    node: [i32; 4],
-    weight: [f32; 4],
+struct Nodes<L: Lanes> {
+    node: L::Ints,
+    weight: L,
 }
 
-impl Nodes {
+impl<L: Lanes> Nodes<L> {
     #[inline(always)]
-    fn new(at: f32x4) -> Self {
+    fn new(at: L) -> Self {
         let (node, weight) = split(at);
-        Self { node: node.to_array(), weight: weight.to_array() }
+        Self { node, weight }
+    }
+
+    /// Of the slope x : z.
+    #[inline(always)]
+    fn of_slope(x: L, z: L) -> Self {
+        const HALF: f32 = 0.5 * CELLS as f32;
+        let length = x & !L::splat(-0.0);
+        Self::new(x * HALF / (length + z) + HALF)
     }
 
     #[inline(always)]
-    fn at(&self, i: usize) -> (i32, f32) {
-        (self.node[i], self.weight[i])
+    fn first(&self) -> (i32, f32) {
+        (self.node.to_array()[0], self.weight.to_array()[0])
+    }
+}
+
+/// Views and numbers whose intervals are not yet taken.
+struct Narrowed<'a, V> {
+    lobe: BoundedRef<'a>,
+    v: &'a [V],
+    u: &'a [[f32; 2]],
+    numbers: &'a mut [[f32; 2]],
+    share: &'a mut [f32],
+}
+
+impl<V: Copy + Into<[f32; 3]>> Narrowed<'_, V> {
+    /// Takes those of all views but those too few to fill lanes, which are left.
+    #[inline(always)]
+    fn groups<L: Lanes>(self) -> Self {
+        let Self { lobe, v, u, numbers, share } = self;
+        let whole = v.len() - v.len() % L::WIDTH;
+        let (v, v_rest) = v.split_at(whole);
+        let (u, u_rest) = u.split_at(whole);
+        let (n, n_rest) = numbers.split_at_mut(whole);
+        let (s, s_rest) = share.split_at_mut(whole);
+        let inputs = v.chunks_exact(L::WIDTH).zip(u.chunks_exact(L::WIDTH));
+        let outputs = n.chunks_exact_mut(L::WIDTH).zip(s.chunks_exact_mut(L::WIDTH));
+        for ((v, u), (n, s)) in inputs.zip(outputs) {
+            let [from, length] = lobe.intervals_of(components::<L, V>(v));
+            s.copy_from_slice(length.to_array().as_ref());
+            let from = from.to_array();
+            for i in 0..L::WIDTH {
+                n[i] = [within(from[i], s[i], u[i][0]), u[i][1]];
+            }
+        }
+        Self { lobe, v: v_rest, u: u_rest, numbers: n_rest, share: s_rest }
+    }
+}
+
+impl<V: Copy + Into<[f32; 3]>> Work for Narrowed<'_, V> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Self {
+        self.groups::<L>()
     }
 }
 
@@ -457,12 +506,12 @@ mod tests {
             for i in 0..331 {
                 let at = rows * i as f32 / 330.0;
                 let table = lobe.slices.rows_at(at).unwrap();
-                let view = Nodes::new(f32x4::splat(at / SHARED as f32)).at(0);
+                let view = Nodes::new(f32x4::splat(at / SHARED as f32)).first();
                 for j in 0..=500 {
                     let x = -1.0 + j as f32 / 250.0;
                     let exact = lobe.slices.number_along(&table, x.into(), (1.0 - x.abs()).into());
                     let half = 0.5 * CELLS as f32;
-                    let slope = Nodes::new(f32x4::splat(x * half + half)).at(0);
+                    let slope = Nodes::new(f32x4::splat(x * half + half)).first();
                     let [low, high] =
                         [0, 1].map(|end| f64::from(bounded.by_ref().limit(view, slope, end)));
                     assert!(low <= exact && exact <= high, "{gamma} {at} {x}: {low} {exact}");
