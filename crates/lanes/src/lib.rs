@@ -1,5 +1,5 @@
-//! Code over `f32` that is written once and runs in as many SIMD lanes as the processor has: 4, or 8
-//! with AVX2.
+//! Code over `f32` that is written once and runs in as many SIMD lanes as the processor has: 4, or
+//! 8 with AVX2.
 //!
 //! [`wide`] chooses its instructions when it is compiled, so that a program for every processor
 //! would keep to 4 lanes. Here code is generic over [`Lanes`], and [`widest`] runs it in the most
@@ -49,9 +49,9 @@ pub trait Work {
 
     /// Does the work, in lanes of type `L`.
     ///
-    /// It, and all functions in it that use lanes, must be `#[inline(always)]` to be fast: only what
-    /// becomes part of the caller is compiled for the processor. Closures cannot be, and are to
-    /// return other types; `map` of arrays takes them as well.
+    /// It, and all functions in it that use lanes, must be `#[inline(always)]` to be fast: only
+    /// what becomes part of the caller is compiled for the processor. Closures are not inlined
+    /// always, nor is `map` of arrays: neither should compute in lanes.
     fn run<L: Lanes>(self) -> Self::Output;
 }
 

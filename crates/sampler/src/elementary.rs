@@ -12,14 +12,29 @@ use microfacet_lanes::{Ints, Lanes};
 /// The sine and the cosine of 2πu for u ∈ [0, 1], to 2e-7 absolute, exact where they are 0.
 #[inline(always)]
 pub(crate) fn turn(u: f32) -> [f32; 2] {
-    // Of x ∈ [−¼, ¼]; the polynomial errs by 7e-9.
-    let sine = |x: f32| {
-        let y = x * x;
-        x * (TAU + y * (-41.341_68 + y * (81.602_475 + y * (-76.581_17 + y * 39.759_827))))
-    };
     let x = 0.5 - u;
     let quarter = x.abs() - 0.25;
-    [sine((0.25 - quarter.abs()).copysign(x)), sine(quarter)]
+    [sine_of_turns((0.25 - quarter.abs()).copysign(x)), sine_of_turns(quarter)]
+}
+
+/// [`turn`] in lanes.
+#[inline(always)]
+pub(crate) fn turns<L: Lanes>(u: L) -> [L; 2] {
+    let sign = L::splat(-0.0);
+    let x = L::splat(0.5) - u;
+    let quarter = (x & !sign) - 0.25;
+    let from_half = L::splat(0.25) - (quarter & !sign);
+    [sine_of_turns((from_half & !sign) ^ (x & sign)), sine_of_turns(quarter)]
+}
+
+/// The sine of 2πx for x ∈ [−¼, ¼], to 7e-9.
+#[inline(always)]
+fn sine_of_turns<T>(x: T) -> T
+where
+    T: Copy + Mul<Output = T> + Mul<f32, Output = T> + Add<f32, Output = T>,
+{
+    let y = x * x;
+    x * (y * (y * (y * (y * 39.759_827 + -76.581_17) + 81.602_475) + -41.341_68) + TAU)
 }
 
 /// log₂ of positive normal numbers, to 1e-7 of the logarithm (so also next to 1) and 1 ulp of its
@@ -160,6 +175,7 @@ mod tests {
             let (sin, cos) = libm::sincos(core::f64::consts::TAU * f64::from(u));
             let [s, c] = turn(u).map(f64::from);
             assert!((s - sin).abs() < 2e-7 && (c - cos).abs() < 2e-7, "{u}: {s}, {c}");
+            assert_eq!(turns(f32x4::splat(u)).map(|x| x.to_array()[2]), turn(u), "{u}");
         }
         assert_eq!([0.0, 0.5, 1.0].map(|u| turn(u)[0]), [0.0; 3]);
         assert_eq!([0.25, 0.75].map(|u| turn(u)[1]), [0.0; 2]);

@@ -23,7 +23,8 @@ use crate::error::{BatchError, same_lengths};
 /// ```
 pub trait Batch: MicrofacetDistribution {
     /// [`sample_visible_normal`](MicrofacetDistribution::sample_visible_normal) for each view and
-    /// pair of numbers, into `m`: the same normals, to 2 ulp.
+    /// pair of numbers, into `m`: the same normals, to 2 ulp, or to more where
+    /// roughnesses differ by many orders of magnitude and rounding has hidden the normal.
     ///
     /// # Errors
     /// [`BatchError`] if the slices are not of one length; `m` is then untouched.

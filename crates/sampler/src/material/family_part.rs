@@ -218,70 +218,113 @@ impl<'a> AtShape<'a> {
     }
 }
 
-impl Shapes for AtShape<'_> {
+/// Shapes of one part: one for each lane, or one for all.
+#[derive(Clone, Copy)]
+pub(super) struct PerLane<'a>(pub(super) &'a [AtShape<'a>]);
+
+impl<'a> PerLane<'a> {
+    #[inline(always)]
+    fn part(self) -> &'a Part {
+        self.0[0].part
+    }
+
+    #[inline(always)]
+    fn at(self, lane: usize) -> &'a AtShape<'a> {
+        &self.0[lane.min(self.0.len() - 1)]
+    }
+}
+
+impl Shapes for PerLane<'_> {
+    #[inline(always)]
+    fn s_lanes<L: Lanes>(self) -> L {
+        L::from_fn(|i| self.at(i).s)
+    }
+
     #[inline(always)]
     fn peeled(self) -> bool {
-        !self.part.rests.is_empty()
+        !self.part().rests.is_empty()
     }
 
     #[inline(always)]
     fn lines(self) -> Lines {
-        self.part.lines
+        self.part().lines
     }
 
     #[inline(always)]
     fn half(self) -> u32 {
-        self.part.half
+        self.part().half
     }
 
     #[inline(always)]
     fn scales(self) -> [f32; 2] {
-        self.part.scales
-    }
-
-    #[inline(always)]
-    fn masking_view(self) -> (Rational, f32) {
-        (self.part.masking_view, self.part.masking_cells)
-    }
-
-    #[inline(always)]
-    fn s_lanes<L: Lanes>(self) -> L {
-        L::splat(self.s)
+        self.part().scales
     }
 
     #[inline(always)]
     fn between_lanes<L: Lanes>(self, low: L::Ints, w: L) -> [L; 4] {
-        let (part, low, w_of) = (self.part, low.to_array(), w.to_array());
-        let stride = 2 * part.half as usize;
-        let node = |i: usize| self.between(low[i] as usize, low[i] as usize + stride, w_of[i]);
-        L::columns(node)
+        let (low, w, stride) = (low.to_array(), w.to_array(), 2 * self.part().half as usize);
+        L::columns(|i| self.at(i).between(low[i] as usize, low[i] as usize + stride, w[i]))
     }
 
     #[inline(always)]
     fn across_lanes<L: Lanes>(self, cells: L::Ints, w: L) -> L {
-        hermite_lanes(self.part.across.pairs(self.across, cells), w)
+        let (table, cells) = (&self.part().across, cells.to_array());
+        let pair = |i: usize| table.pair_or_nan(self.at(i).across, cells[i]);
+        hermite_lanes(L::columns(pair), w)
     }
 
     #[inline(always)]
     fn parts<L: Lanes>(self, u: L, at: L) -> [L; 2] {
         let (cells, w) = cell_of_share(at);
-        let places = cells.to_array();
-        let rests = L::columns(|i| {
-            f32x4::new(self.part.rests.cell(self.masking, places[i] as u32 as usize))
-        });
-        let heavy = cubic_lanes(coefficients(&self.part.rhos, cells), w);
-        let rest = cubic_lanes(rests, w);
+        let (part, places) = (self.part(), cells.to_array());
+        let rest = |i: usize| part.rests.cell(self.at(i).masking, places[i] as u32 as usize);
+        let rest = cubic_lanes(L::columns(|i| f32x4::new(rest(i))), w);
+        let heavy = cubic_lanes(coefficients(&part.rhos, cells), w);
         heavy::parts_of_areas(u, heavy, rest)
     }
 
     #[inline(always)]
     fn tails<L: Lanes>(self) -> [L; 2] {
-        self.tail.in_lanes()
+        let tail = |i: usize| self.at(i).tail;
+        [L::from_fn(|i| tail(i).exponent), L::from_fn(|i| tail(i).root_s)]
+    }
+
+    #[inline(always)]
+    fn masking_view(self) -> (Rational, f32) {
+        (self.part().masking_view, self.part().masking_cells)
     }
 
     #[inline(always)]
     fn masking_lanes<L: Lanes>(self, cells: L::Ints, w: L) -> L {
-        hermite_lanes(self.part.masking.pairs(self.masking, cells), w)
+        let (table, cells) = (&self.part().masking, cells.to_array());
+        let pair = |i: usize| table.pair_or_nan(self.at(i).masking, cells[i]);
+        hermite_lanes(L::columns(pair), w)
+    }
+}
+
+/// Those of one shape for all lanes.
+macro_rules! for_all_lanes {
+    ($(fn $name:ident$(<$lanes:ident>)?($($value:ident: $type:ty),*) -> $out:ty;)*) => {$(
+        #[inline(always)]
+        fn $name$(<$lanes: Lanes>)?(self $(, $value: $type)*) -> $out {
+            PerLane(&[self]).$name($($value),*)
+        }
+    )*};
+}
+
+impl Shapes for AtShape<'_> {
+    for_all_lanes! {
+        fn s_lanes<L>() -> L;
+        fn peeled() -> bool;
+        fn lines() -> Lines;
+        fn half() -> u32;
+        fn scales() -> [f32; 2];
+        fn between_lanes<L>(low: L::Ints, w: L) -> [L; 4];
+        fn across_lanes<L>(cells: L::Ints, w: L) -> L;
+        fn parts<L>(u: L, at: L) -> [L; 2];
+        fn tails<L>() -> [L; 2];
+        fn masking_view() -> (Rational, f32);
+        fn masking_lanes<L>(cells: L::Ints, w: L) -> L;
     }
 }
 

@@ -161,7 +161,7 @@ pub(crate) fn parts_of_areas<L: Lanes>(u: L, heavy: L, rest: L) -> [L; 2] {
 
 /// Clamped to [0, 1], NaN to 0.
 #[inline(always)]
-fn units<L: Lanes>(x: L) -> L {
+pub(super) fn units<L: Lanes>(x: L) -> L {
     (x & x.simd_gt(L::splat(0.0))).fast_min(L::splat(1.0))
 }
 

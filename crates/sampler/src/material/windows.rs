@@ -9,7 +9,7 @@
 use alloc::vec::Vec;
 
 use microfacet_core::shape::S_END;
-use microfacet_lanes::{Ints, Lanes, f32x4};
+use microfacet_lanes::f32x4;
 use microfacet_tables::axis::hermite::{Cell, Node, cubic_through_thirds};
 use microfacet_tables::axis::lagrange;
 
@@ -191,11 +191,10 @@ impl Planes<Node> {
         Some(combined([window.halves(low), window.halves(high)]))
     }
 
-    /// [`pair`](Self::pair) of places in lanes, by column; NaN where there are none.
+    /// [`pair`](Self::pair), NaN where there are none.
     #[inline(always)]
-    pub(super) fn pairs<L: Lanes>(&self, window: Window, places: L::Ints) -> [L; 4] {
-        let places = places.to_array();
-        L::columns(|i| self.pair(window, places[i] as u32 as usize).unwrap_or(NONE))
+    pub(super) fn pair_or_nan(&self, window: Window, place: i32) -> f32x4 {
+        self.pair(window, place as u32 as usize).unwrap_or(NONE)
     }
 
     /// [`pair`](Self::pair), linear in w between a place and another.

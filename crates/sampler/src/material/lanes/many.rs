@@ -85,12 +85,9 @@ impl<S: Shape> Surface<S> {
             *slopes = at.look_up::<HEAVY, S>(shape);
         }
         for (i, (m, v)) in m.chunks_exact_mut(L::WIDTH).zip(views).enumerate() {
-            let normals = slopes[i].assemble(shape.s_lanes(), &located[i].views, sigma);
             let shrink = if HEAVY { slopes[i].shrink } else { L::splat(1.0) };
-            let mut normals = above_horizon(normals, shrink);
-            if !slopes[i].clear.all() {
-                normals = facing(normals, components(v), slopes[i].clear);
-            }
+            let views = &located[i].views;
+            let normals = slopes[i].normals(shape.s_lanes(), views, sigma, shrink, v);
             let [x, y, z] = normals;
             let (x, y, z) = (x.to_array(), y.to_array(), z.to_array());
             m.iter_mut().enumerate().for_each(|(i, m)| *m = M::from([x[i], y[i], z[i]]));
@@ -123,6 +120,21 @@ impl<S: Shape, V: Copy + Into<[f32; 3]>, M: From<[f32; 3]>> Work for Normals<'_,
     fn run<L: Lanes>(self) -> usize {
         self.surface.sample_groups::<L, V, M>(self.v, self.u, self.m)
     }
+}
+
+/// A visible normal of each lane's shape and σ.
+#[inline(always)]
+pub(crate) fn sample_lanes<L: Lanes, S: Shapes, V: Copy + Into<[f32; 3]>>(
+    shapes: S,
+    sigma: [L; 2],
+    v: &[V],
+    u: &[[f32; 2]],
+) -> [L; 3] {
+    let [x, y, z] = components::<L, V>(v);
+    let u = [L::from_fn(|i| u[i][0]), L::from_fn(|i| u[i][1])];
+    let at = Located::new::<true, S>(shapes, Views::new(x * sigma[0], y * sigma[1], z), u);
+    let slopes = at.look_up::<true, S>(shapes);
+    slopes.normals(shapes.s_lanes(), &at.views, sigma, slopes.shrink, v)
 }
 
 /// The general path for one direction: a visible normal for every material and view.
@@ -218,6 +230,20 @@ impl<L: Lanes> Located<L> {
 }
 
 impl<L: Lanes> Slopes<L> {
+    /// The visible normals of views `v`.
+    #[inline(always)]
+    fn normals<V: Copy + Into<[f32; 3]>>(
+        &self,
+        s: L,
+        views: &Views<L>,
+        sigma: [L; 2],
+        shrink: L,
+        v: &[V],
+    ) -> [L; 3] {
+        let normals = above_horizon(self.assemble(s, views, sigma), shrink);
+        if self.clear.all() { normals } else { facing(normals, components(v), self.clear) }
+    }
+
     #[inline(always)]
     fn assemble(&self, s: L, views: &Views<L>, [sx, sy]: [L; 2]) -> [L; 3] {
         let &Self { x, z, t, t_z, .. } = self;
@@ -250,7 +276,7 @@ impl<L: Lanes> Number<L> {
 /// [`face`](crate::material::horizon::face) for normals in lanes, but those that are `clear`: what
 /// becomes of them must not depend on their neighbours.
 #[inline(always)]
-fn facing<L: Lanes>(m: [L; 3], [vx, vy, vz]: [L; 3], clear: L) -> [L; 3] {
+pub(crate) fn facing<L: Lanes>(m: [L; 3], [vx, vy, vz]: [L; 3], clear: L) -> [L; 3] {
     let zero = L::splat(0.0);
     let vz = vz & vz.simd_gt(zero);
     let facing = vx * m[0] + vy * m[1] + vz * m[2];
@@ -270,7 +296,7 @@ fn facing<L: Lanes>(m: [L; 3], [vx, vy, vz]: [L; 3], clear: L) -> [L; 3] {
 
 /// Normalises normals, multiplies z by `shrink`, and raises z to [`HORIZON`] where it is lower.
 #[inline(always)]
-fn above_horizon<L: Lanes>([x, y, z]: [L; 3], shrink: L) -> [L; 3] {
+pub(crate) fn above_horizon<L: Lanes>([x, y, z]: [L; 3], shrink: L) -> [L; 3] {
     // By the reciprocal: two divisions fewer, at the cost of a last bit.
     let r = L::splat(1.0) / (x * x + z * z + y * y).sqrt();
     [x * r, y * r, (z * r * shrink).fast_max(L::splat(HORIZON))]

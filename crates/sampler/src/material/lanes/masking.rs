@@ -9,7 +9,7 @@ use microfacet_tables::axis::hermite::split;
 
 use super::many::components;
 use super::{swap_halves, swap_pairs};
-use crate::material::surface::{Shape, Surface};
+use crate::material::surface::{Shape, Shapes, Surface};
 use crate::vector::vec3;
 
 /// Returns 0, the G1 of NaN; cold, so that the common path stays short.
@@ -90,26 +90,33 @@ impl<S: Shape> Surface<S> {
     /// G1 of all views but those too few to fill lanes; how many they are.
     #[inline(always)]
     fn g1_groups<L: Lanes, V: Copy + Into<[f32; 3]>>(self, v: &[V], g1: &mut [f32]) -> usize {
+        let [kx, ky] = self.scales.kappa;
+        let kappa = [L::splat(kx), L::splat(ky)];
         for (v, g1) in v.chunks_exact(L::WIDTH).zip(g1.chunks_exact_mut(L::WIDTH)) {
-            g1.copy_from_slice(self.g1_lanes::<L, V>(v).to_array().as_ref());
+            let lanes = g1_lanes::<L, S, V>(self.shape, kappa, v);
+            g1.copy_from_slice(lanes.to_array().as_ref());
         }
         v.len() - v.len() % L::WIDTH
     }
+}
 
-    #[inline(always)]
-    fn g1_lanes<L: Lanes, V: Copy + Into<[f32; 3]>>(self, w: &[V]) -> L {
-        let (view, cells) = self.shape.masking_view();
-        let [wx, wy, wz] = components::<L, V>(w);
-        let [kx, ky] = self.scales.kappa;
-        let (x, y) = (wx * kx, wy * ky);
-        let z = above_zero(wz);
-        let across = (x * x + y * y).sqrt();
-        let [q, at] = view.of_views(across, z, cells);
-        let (cell, w) = split(at);
-        let g1 = q * self.shape.masking_lanes(cell, w);
-        // NaN gives 0 here, too.
-        g1.fast_min(L::splat(1.0)) & g1.simd_ge(L::splat(0.0))
-    }
+/// G1 of each lane's view and shape, whose κσx and κσy are given.
+#[inline(always)]
+fn g1_lanes<L: Lanes, S: Shapes, V: Copy + Into<[f32; 3]>>(
+    shapes: S,
+    [kx, ky]: [L; 2],
+    w: &[V],
+) -> L {
+    let (view, cells) = shapes.masking_view();
+    let [wx, wy, wz] = components::<L, V>(w);
+    let (x, y) = (wx * kx, wy * ky);
+    let z = above_zero(wz);
+    let across = (x * x + y * y).sqrt();
+    let [q, at] = view.of_views(across, z, cells);
+    let (cell, w) = split(at);
+    let g1 = q * shapes.masking_lanes(cell, w);
+    // NaN gives 0 here, too.
+    g1.fast_min(L::splat(1.0)) & g1.simd_ge(L::splat(0.0))
 }
 
 /// [`Surface::g1_groups`].
