@@ -7,14 +7,34 @@
 use core::f32::consts::{LN_2, TAU};
 use core::ops::{Add, Mul};
 
-use wide::{bytemuck, f32x4, i32x4};
+use microfacet_lanes::{Ints, Lanes};
 
 /// The sine and the cosine of 2πu for u ∈ [0, 1], to 2e-7 absolute, exact where they are 0.
 #[inline(always)]
 pub(crate) fn turn(u: f32) -> [f32; 2] {
     let x = 0.5 - u;
     let quarter = x.abs() - 0.25;
-    [sine((0.25 - quarter.abs()).copysign(x)), sine(quarter)]
+    [sine_of_turns((0.25 - quarter.abs()).copysign(x)), sine_of_turns(quarter)]
+}
+
+/// [`turn`] in lanes.
+#[inline(always)]
+pub(crate) fn turns<L: Lanes>(u: L) -> [L; 2] {
+    let sign = L::splat(-0.0);
+    let x = L::splat(0.5) - u;
+    let quarter = (x & !sign) - 0.25;
+    let from_half = L::splat(0.25) - (quarter & !sign);
+    [sine_of_turns((from_half & !sign) ^ (x & sign)), sine_of_turns(quarter)]
+}
+
+/// The sine of 2πx for x ∈ [−¼, ¼], to 7e-9.
+#[inline(always)]
+fn sine_of_turns<T>(x: T) -> T
+where
+    T: Copy + Mul<Output = T> + Mul<f32, Output = T> + Add<f32, Output = T>,
+{
+    let y = x * x;
+    x * (y * (y * (y * (y * 39.759_827 + -76.581_17) + 81.602_475) + -41.341_68) + TAU)
 }
 
 /// The same of u ∈ [0, ¼], with the digits of small sines.
@@ -39,15 +59,14 @@ pub(crate) fn scaled_expm1_over(s: f32, y: f32, scale: f32) -> f32 {
 /// log₂ of positive normal numbers, to 1e-7 of the logarithm (so also next to 1) and 1 ulp of its
 /// integer part; −∞ for 0 and below.
 #[inline(always)]
-pub(crate) fn log2(x: f32x4) -> f32x4 {
+pub(crate) fn log2<L: Lanes>(x: L) -> L {
     // x = 2ᵉ m with m ∈ [√½, √2], and log₂ m = 2 artanh((m−1)/(m+1))/ln 2.
     const ROOT_HALF: i32 = 0x3f35_04f3;
-    let bits: i32x4 = bytemuck::cast(x);
-    let exponent: i32x4 = (bits - ROOT_HALF) >> 23;
-    let m: f32x4 = bytemuck::cast(bits - (exponent << 23));
-    let log = log2_of_half_tangent((m - 1.0) / (m + 1.0));
-    let log = f32x4::from_i32x4(exponent) + log;
-    x.simd_gt(0.0).select(log, f32x4::splat(f32::NEG_INFINITY))
+    let bits = x.to_bits();
+    let exponent = (bits - L::Ints::splat(ROOT_HALF)).down::<23>();
+    let m = L::from_bits(bits - exponent.up::<23>());
+    let log = L::from_ints(exponent) + log2_of_half_tangent((m - 1.0) / (m + 1.0));
+    x.simd_gt(L::splat(0.0)).select(log, L::splat(f32::NEG_INFINITY))
 }
 
 /// log₂(1 + part/whole) of part ≥ 0 and whole > 0, to 3e-7 of the logarithm: it keeps the digits of
@@ -120,52 +139,52 @@ fn growth(whole: f32, part: f32) -> [f32; 2] {
 
 /// 2ˣ for x ≤ 126, to 2e-7; below −126 the least normal number.
 #[inline(always)]
-pub(crate) fn exp2(x: f32x4) -> f32x4 {
-    let [power, shifted] = whole_and_fraction(x.fast_max(f32x4::splat(LEAST_EXPONENT)));
-    let whole: i32x4 = bytemuck::cast(shifted);
-    let scale: f32x4 = bytemuck::cast((whole << 23) + (127 << 23));
-    power * scale
+pub(crate) fn exp2<L: Lanes>(x: L) -> L {
+    let [power, shifted] = whole_and_fraction(x.fast_max(L::splat(LEAST_EXPONENT)));
+    let scale = shifted.to_bits().up::<23>() + L::Ints::splat(127 << 23);
+    power * L::from_bits(scale)
 }
 
 const LEAST_EXPONENT: f32 = -126.0;
 
-/// A number, or lanes of them: the formulas are written once for both.
-trait Number: Copy + From<f32> + Add<Output = Self> + Mul<Output = Self> {}
-impl Number for f32 {}
-impl Number for f32x4 {}
-
 /// log₂ of (1+t)/(1−t), 2 artanh(t)/ln 2, by powers of t².
 #[inline(always)]
-fn log2_of_half_tangent<T: Number>(t: T) -> T {
+fn log2_of_half_tangent<T>(t: T) -> T
+where
+    T: Copy + Mul<Output = T> + Mul<f32, Output = T> + Add<f32, Output = T>,
+{
     t * series_of_half_tangent(t * t)
 }
 
 /// [`log2_of_half_tangent`] over t, from y = t²: for |t| ≤ 0.2, to 3e-9.
 #[inline(always)]
-fn series_of_half_tangent<T: Number>(y: T) -> T {
+fn series_of_half_tangent<T>(y: T) -> T
+where
+    T: Copy + Mul<Output = T> + Mul<f32, Output = T> + Add<f32, Output = T>,
+{
     // Horner's scheme: in the split into halves y² may be subnormal, and slow.
-    let [a, b, c, d] = [2.885_390_07, 0.961_802_25, 0.576_390_26, 0.439_189_35].map(T::from);
-    a + y * (b + y * (c + y * d))
+    y * (y * (y * 0.439_189_35 + 0.576_390_26) + 0.961_802_25) + 2.885_390_07
 }
 
 /// 2ʷ, and a number whose last bits are the whole number x − w; w ∈ [−½, ½].
 #[inline(always)]
-fn whole_and_fraction(x: f32x4) -> [f32x4; 2] {
-    let c = f32x4::splat;
-    // A sum with `shift` is rounded to a whole number.
-    let shift = c(12_582_912.0);
-    let shifted = x + shift;
-    let w = x - (shifted - shift);
+fn whole_and_fraction<L: Lanes>(x: L) -> [L; 2] {
+    // A sum with this is rounded to a whole number.
+    const SHIFT: f32 = 12_582_912.0;
+    let shifted = x + SHIFT;
+    let w = x - (shifted - SHIFT);
     // To 2e-9.
     let square = w * w;
-    let low = c(1.0) + w * c(LN_2);
-    let middle = c(0.240_226_51) + w * c(0.055_503_27);
-    let high = (c(0.009_618_057) + w * c(0.001_340_042_8)) + square * c(0.000_154_614_45);
+    let low = w * LN_2 + 1.0;
+    let middle = w * 0.055_503_27 + 0.240_226_51;
+    let high = (w * 0.001_340_042_8 + 0.009_618_057) + square * 0.000_154_614_45;
     [(low + square * middle) + (square * square) * high, shifted]
 }
 
 #[cfg(test)]
 mod tests {
+    use microfacet_lanes::f32x4;
+
     use super::*;
 
     #[test]
@@ -175,6 +194,7 @@ mod tests {
             let (sin, cos) = libm::sincos(core::f64::consts::TAU * f64::from(u));
             let [s, c] = turn(u).map(f64::from);
             assert!((s - sin).abs() < 2e-7 && (c - cos).abs() < 2e-7, "{u}: {s}, {c}");
+            assert_eq!(turns(f32x4::splat(u)).map(|x| x.to_array()[2]), turn(u), "{u}");
         }
         for i in 0..=1000 {
             let u = 0.25 * libm::exp2f(-0.1 * i as f32);

@@ -108,7 +108,10 @@
 //!   the tests pass on 32 bits too (`.ci/wasm`), and those of the files on big-endian `s390x`
 //!   (`cargo +nightly miri test -p microfacet-tables --target s390x-unknown-linux-gnu --lib`).
 //! - `embedded` (default): the default set, [`Tables::embedded`], 1.7 MB of γ ∈ [1.501, ∞].
-//! - No unsafe code. Every type is `Send` and `Sync`; nothing is cached behind a lock.
+//! - No unsafe code, but for the instructions of 8 lanes, in the small crate `microfacet-lanes`.
+//!   Batches run in 8 lanes where the processor has AVX2 (without `std`: where it is compiled in),
+//!   and in 4 elsewhere, with the same bits. Every type is `Send` and `Sync`; nothing is cached
+//!   behind a lock.
 //! - The oldest compiler is Rust 1.89; a later one is required by a new minor version only.
 //!   Versions follow semantic versioning: before 1.0 a minor version may break programs, and the
 //!   changelog says how. Other numbers than before, beyond the errors that are stated, count as a

@@ -409,3 +409,41 @@ fn weights_stay_bounded_for_smooth_surfaces() {
         assert!(worst < 30.0, "{worst}");
     }
 }
+
+/// Of every form of albedo, in lanes or not.
+#[test]
+fn batches_of_albedos_are_single_calls() {
+    let (tables, masking) = (Tables::embedded(), Masking::HeightCorrelated);
+    let family = tables.family_albedo(masking).unwrap();
+    for count in [0, 1, 3, 5, 8, 13, 200] {
+        let z = |i: usize| match i % 11 {
+            0 => [1.0, 0.0, -0.0, f32::NAN, -0.5, 1e-5, 1.5][i / 11 % 7],
+            part => part as f32 / 11.0 + i as f32 * 4e-4,
+        };
+        let v: Vec<[f32; 3]> = (0..count).map(|i| [0.1, 0.2, z(i)]).collect();
+        let mut e = vec![2.0; count];
+        let bits = |x: f32| x.to_bits();
+        for (sigma, gamma) in [(0.3, 2.5), (1e-8, 1.501), (3.0, f32::INFINITY), (0.0, 4.0)] {
+            let at = family.at(sigma, gamma);
+            at.albedo_batch(&v, &mut e).unwrap();
+            for (v, e) in v.iter().zip(&e) {
+                assert_eq!(bits(*e), bits(at.albedo(*v)), "{sigma} {gamma} {v:?}");
+            }
+        }
+        let albedo = tables.albedo(0.3, 2.5, masking).unwrap();
+        albedo.albedo_batch(&v, &mut e).unwrap();
+        assert!(v.iter().zip(&e).all(|(v, e)| bits(*e) == bits(albedo.albedo(*v))));
+        let shape = tables.shape_albedo(2.5, masking).unwrap();
+        let at = shape.at(0.3);
+        at.albedo_batch(&v, &mut e).unwrap();
+        assert!(v.iter().zip(&e).all(|(v, e)| bits(*e) == bits(at.albedo(*v))));
+        let sigma: Vec<f32> = (0..count).map(|i| 0.01 * i as f32).collect();
+        let gamma: Vec<f32> = (0..count).map(|i| 1.45 + 0.1 * i as f32).collect();
+        family.albedo_batch(&sigma, &gamma, &v, &mut e).unwrap();
+        for i in 0..count {
+            assert_eq!(bits(e[i]), bits(family.at(sigma[i], gamma[i]).albedo(v[i])), "{i}");
+        }
+    }
+    let at = family.at(0.3, 2.5);
+    assert!(at.albedo_batch(&[[0.0, 0.0, 1.0]; 3], &mut [0.0; 2]).is_err());
+}

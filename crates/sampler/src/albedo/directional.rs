@@ -8,7 +8,7 @@ use microfacet_tables::{Reflectance, Table};
 use super::curve::{Curve, MaterialPoint, Rows, missing};
 use super::elevation::Elevation;
 use super::moments::{Moments, averaged, down_to_grazing, less_mirror};
-use crate::error::MaterialError;
+use crate::error::{BatchError, MaterialError, same_lengths};
 use crate::vector::vec3;
 
 /// The directional albedo of one material as a function of the view, with F = 1 and as moments of
@@ -85,6 +85,22 @@ impl Albedo {
     #[must_use]
     pub fn albedo(&self, v: impl Into<[f32; 3]>) -> f32 {
         1.0 - self.lost(v)
+    }
+
+    /// [`albedo`](Self::albedo) for each view, into `e`: the same numbers.
+    ///
+    /// # Errors
+    /// [`BatchError`] if the slices are not of one length; `e` is then untouched.
+    pub fn albedo_batch<V: Copy + Into<[f32; 3]>>(
+        &self,
+        v: &[V],
+        e: &mut [f32],
+    ) -> Result<(), BatchError> {
+        same_lengths(&[("v", v.len()), ("e", e.len())])?;
+        for (v, e) in v.iter().zip(e) {
+            *e = self.albedo(*v);
+        }
+        Ok(())
     }
 
     /// The share of light lost, 1 − E(v), with all its digits where E is close to 1.

@@ -14,6 +14,7 @@ use super::average::over_views;
 use super::elevation::Elevation;
 use super::moments::{Moments, averaged, down_to_grazing, less_mirror};
 use crate::elementary::log2;
+use crate::error::{BatchError, same_lengths};
 use crate::tables::Tables;
 use crate::vector::vec3;
 
@@ -203,6 +204,22 @@ impl ShapeAlbedoAt<'_> {
     #[must_use]
     pub fn albedo(&self, v: impl Into<[f32; 3]>) -> f32 {
         1.0 - self.lost(v)
+    }
+
+    /// [`albedo`](Self::albedo) for each view, into `e`: the same numbers.
+    ///
+    /// # Errors
+    /// [`BatchError`] if the slices are not of one length; `e` is then untouched.
+    pub fn albedo_batch<V: Copy + Into<[f32; 3]>>(
+        &self,
+        v: &[V],
+        e: &mut [f32],
+    ) -> Result<(), BatchError> {
+        same_lengths(&[("v", v.len()), ("e", e.len())])?;
+        for (v, e) in v.iter().zip(e) {
+            *e = self.albedo(*v);
+        }
+        Ok(())
     }
 
     /// The share of light lost, 1 − E(v), with all its digits where E is close to 1.

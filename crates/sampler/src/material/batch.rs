@@ -4,8 +4,9 @@ use super::distribution::MicrofacetDistribution;
 use crate::error::{BatchError, same_lengths};
 
 /// Functions over whole slices of views, whose vectors are of any type that converts to and from
-/// three `f32`. Provided one by one; Student-t lobes compute four at once: G1 in 60 % of the time,
-/// normals in 40 % (`cargo run --profile dist -p microfacet-bench`).
+/// three `f32`. Provided one by one; Student-t lobes compute eight at once where the processor has
+/// AVX2, and elsewhere four, with the same bits: normals in less than half of the time
+/// (`cargo run --profile dist -p microfacet-bench`).
 ///
 /// ```
 /// # #[cfg(feature = "embedded")] {
@@ -22,7 +23,8 @@ use crate::error::{BatchError, same_lengths};
 /// ```
 pub trait Batch: MicrofacetDistribution {
     /// [`sample_visible_normal`](MicrofacetDistribution::sample_visible_normal) for each view and
-    /// pair of numbers, into `m`: the same normals, to 2 ulp.
+    /// pair of numbers, into `m`: the same normals, to 2 ulp, or to more where
+    /// roughnesses differ by many orders of magnitude and rounding has hidden the normal.
     ///
     /// # Errors
     /// [`BatchError`] if the slices are not of one length; `m` is then untouched.

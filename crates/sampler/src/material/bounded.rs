@@ -20,21 +20,21 @@ use alloc::vec::Vec;
 use glam::Vec3;
 use microfacet_core::math::unit;
 use microfacet_core::{Masking, Roughness};
+use microfacet_lanes::{Ints, Lanes, Work, f32x4, widest};
 use microfacet_tables::axis::hermite::split;
-use wide::f32x4;
 
 use super::batch::Batch;
 use super::delegate::{by_ref, forward};
 use super::distribution::{Facet, MicrofacetDistribution};
 use super::key::LobeKey;
 use super::lanes::first_three;
-use super::lanes::four::{coefficients, sample_general, transpose};
+use super::lanes::many::{components, sample_general};
 use super::lanes::one::draw;
 use super::lanes::views::{View, Views};
 use super::reflecting::Reflecting;
 use super::slices::Slices;
 use super::student_t::{StudentT, StudentTRef};
-use super::surface::{LANES, Scales, Shape, Surface};
+use super::surface::{Scales, Shapes, Surface};
 use super::tabulated::Tabulated;
 use super::upward::{SLACK, ends, lost_above};
 use crate::error::{BatchError, same_lengths};
@@ -226,10 +226,10 @@ impl<'a> BoundedRef<'a> {
         let View { rho, z, at, .. } = view;
         let sin = f32x4::splat(v.x * v.x + v.y * v.y).sqrt();
         let kept = self.kept(rho, z, sin, at, |group, cells| {
-            let limit = |i: usize| f32x4::splat(self.limit(group.at(0), cells[i].at(0), i));
+            let limit = |i: usize| f32x4::splat(self.limit(group.first(), cells[i].first(), i));
             [limit(0), limit(1)]
         });
-        BoundedView { lobe: self.lobe, v, view, kept: kept.lane(0) }
+        BoundedView { lobe: self.lobe, v, view, kept: kept.first() }
     }
 
     /// [`BoundedView::sample`] for each view and pair of numbers, into `m`, and
@@ -246,19 +246,14 @@ impl<'a> BoundedRef<'a> {
     ) -> Result<(), BatchError> {
         same_lengths(&[("v", v.len()), ("u", u.len()), ("m", m.len()), ("share", share.len())])?;
         /// Enough to fill the lanes, and few enough to stay in the first cache.
-        const BLOCK: usize = 32;
+        const BLOCK: usize = 64;
         let blocks = v.chunks(BLOCK).zip(u.chunks(BLOCK));
         for (((v, u), m), share) in blocks.zip(m.chunks_mut(BLOCK)).zip(share.chunks_mut(BLOCK)) {
             let mut numbers = [[0.0; 2]; BLOCK];
             let numbers = &mut numbers[..v.len()];
-            let ((v4, v_rest), (u4, u_rest)) = (v.as_chunks::<LANES>(), u.as_chunks::<LANES>());
-            let ((n4, n_rest), (s4, s_rest)) =
-                (numbers.as_chunks_mut::<LANES>(), share.as_chunks_mut::<LANES>());
-            for (((v, u), n), share) in v4.iter().zip(u4).zip(n4).zip(s4) {
-                let kept = self.kept_of(transpose(v));
-                *share = kept.share.to_array();
-                *n = core::array::from_fn(|i| [kept.lane(i).number(u[i][0]), u[i][1]]);
-            }
+            let narrowed = Narrowed { lobe: *self, v, u, numbers, share };
+            let Narrowed { v: v_rest, u: u_rest, numbers: n_rest, share: s_rest, .. } =
+                widest(narrowed).groups::<f32x4>();
             for (((v, u), n), share) in v_rest.iter().zip(u_rest).zip(n_rest).zip(s_rest) {
                 let kept = self.at(*v).kept;
                 *share = kept.share;
@@ -282,48 +277,53 @@ impl<'a> BoundedRef<'a> {
         (low + w * (high - low)).clamp(0.0, 1.0)
     }
 
+    /// [`limit`](Self::limit) of views in lanes, at the slopes of both ends.
     #[inline(always)]
-    fn kept_of(&self, [vx, vy, vz]: [f32x4; 3]) -> Kept<f32x4> {
+    fn limits<L: Lanes>(&self, row: Nodes<L>, cells: [Nodes<L>; 2]) -> [L; 2] {
+        let (rows, w) = (row.node.to_array(), row.weight.to_array());
+        let (low, low_w) = (cells[0].node.to_array(), cells[0].weight.to_array());
+        let (high, high_w) = (cells[1].node.to_array(), cells[1].weight.to_array());
+        [
+            L::from_fn(|i| self.limit((rows[i], w[i]), (low[i], low_w[i]), 0)),
+            L::from_fn(|i| self.limit((rows[i], w[i]), (high[i], high_w[i]), 1)),
+        ]
+    }
+
+    #[inline(always)]
+    fn kept_of<L: Lanes>(&self, [vx, vy, vz]: [L; 3]) -> Kept<L> {
         let Surface { shape: slices, scales } = self.lobe.surface();
         let [sx, sy] = scales.sigma;
         let Views { rho, z, length, .. } = Views::new(vx * sx, vy * sy, vz);
-        let [at, _] = slices.place::<true>(rho, z, length);
-        self.kept(rho, z, (vx * vx + vy * vy).sqrt(), at, |group, cells| {
-            [0, 1].map(|end| {
-                f32x4::new(core::array::from_fn(|i| self.limit(group.at(i), cells[end].at(i), end)))
-            })
-        })
+        let [at, _] = slices.place::<true, L>(rho, z, length);
+        let sin = (vx * vx + vy * vy).sqrt();
+        self.kept(rho, z, sin, at, |row, cells| self.limits(row, cells))
     }
 
     /// The numbers u₁ that hold all at which lights can be above the horizon, for views with
     /// stretched horizontal length ρ and coordinate `at`; `limits` reads the limits at rows and at
     /// the slopes of both ends.
     #[inline(always)]
-    fn kept(
+    fn kept<L: Lanes>(
         &self,
-        rho: f32x4,
-        cos: f32x4,
-        sin: f32x4,
-        at: f32x4,
-        limits: impl FnOnce(Nodes, [Nodes; 2]) -> [f32x4; 2],
-    ) -> Kept<f32x4> {
+        rho: L,
+        cos: L,
+        sin: L,
+        at: L,
+        limits: impl FnOnce(Nodes<L>, [Nodes<L>; 2]) -> [L; 2],
+    ) -> Kept<L> {
         let Surface { shape: slices, scales } = self.lobe.surface();
         let group = Nodes::new(at * (1.0 / SHARED as f32));
-        let ends = ends(rho, cos, sin, scales.sigma[0]);
-        let cells = ends.map(|[x, z]| {
-            let half = 0.5 * CELLS as f32;
-            Nodes::new(x * half / (x.abs() + z) + half)
-        });
-        let [low, high] = limits(group, cells);
+        let [least, steepest] = ends(rho, cos, sin, scales.sigma[0]);
+        let [low, high] = limits(group, [Nodes::of_slope(least), Nodes::of_slope(steepest)]);
         if slices.peeled {
             // The tabulated part comes first; the heavy one has no slopes away from the viewer.
-            let share = slices.heavy.shares(at, coefficients);
-            let rest = (1.0 - share).fast_max(f32x4::ZERO);
-            let [from, end] = [low, high].map(|number| number * rest);
-            let heavy = (share - lost_above(slices, share, ends[1])).fast_max(f32x4::ZERO);
+            let (zero, share) = (L::splat(0.0), slices.heavy.shares(at));
+            let rest = (L::splat(1.0) - share).fast_max(zero);
+            let (from, end) = (low * rest, high * rest);
+            let heavy = (share - lost_above(slices, share, steepest)).fast_max(zero);
             return Kept { from, share: (end - from) + heavy, end, gap: rest - end };
         }
-        Kept { from: low, share: high - low, end: f32x4::splat(f32::INFINITY), gap: f32x4::ZERO }
+        Kept { from: low, share: high - low, end: L::splat(f32::INFINITY), gap: L::splat(0.0) }
     }
 }
 
@@ -374,23 +374,74 @@ impl Tabulated for BoundedRef<'_> {
     }
 }
 
-/// Nodes below four coordinates, and the weights of the next nodes.
+/// Nodes below coordinates, and the weights of the next nodes.
 #[derive(Clone, Copy)]
-struct Nodes {
-    node: [i32; 4],
-    weight: [f32; 4],
+struct Nodes<L: Lanes> {
+    node: L::Ints,
+    weight: L,
 }
 
-impl Nodes {
+impl<L: Lanes> Nodes<L> {
     #[inline(always)]
-    fn new(at: f32x4) -> Self {
+    fn new(at: L) -> Self {
         let (node, weight) = split(at);
-        Self { node: node.to_array(), weight: weight.to_array() }
+        Self { node, weight }
+    }
+
+    /// Of the slope x : z.
+    #[inline(always)]
+    fn of_slope([x, z]: [L; 2]) -> Self {
+        const HALF: f32 = 0.5 * CELLS as f32;
+        let length = x & !L::splat(-0.0);
+        Self::new(x * HALF / (length + z) + HALF)
     }
 
     #[inline(always)]
-    fn at(&self, i: usize) -> (i32, f32) {
-        (self.node[i], self.weight[i])
+    fn first(&self) -> (i32, f32) {
+        (self.node.to_array()[0], self.weight.to_array()[0])
+    }
+}
+
+/// Views and numbers whose intervals are not yet taken.
+struct Narrowed<'a, V> {
+    lobe: BoundedRef<'a>,
+    v: &'a [V],
+    u: &'a [[f32; 2]],
+    numbers: &'a mut [[f32; 2]],
+    share: &'a mut [f32],
+}
+
+impl<V: Copy + Into<[f32; 3]>> Narrowed<'_, V> {
+    /// Takes those of all views but those too few to fill lanes, which are left.
+    #[inline(always)]
+    fn groups<L: Lanes>(self) -> Self {
+        let Self { lobe, v, u, numbers, share } = self;
+        let whole = v.len() - v.len() % L::WIDTH;
+        let (v, v_rest) = v.split_at(whole);
+        let (u, u_rest) = u.split_at(whole);
+        let (n, n_rest) = numbers.split_at_mut(whole);
+        let (s, s_rest) = share.split_at_mut(whole);
+        let inputs = v.chunks_exact(L::WIDTH).zip(u.chunks_exact(L::WIDTH));
+        let outputs = n.chunks_exact_mut(L::WIDTH).zip(s.chunks_exact_mut(L::WIDTH));
+        for ((v, u), (n, s)) in inputs.zip(outputs) {
+            let kept = lobe.kept_of(components::<L, V>(v));
+            s.copy_from_slice(kept.share.to_array().as_ref());
+            let (from, end, gap) = (kept.from.to_array(), kept.end.to_array(), kept.gap.to_array());
+            for i in 0..L::WIDTH {
+                let kept = Kept { from: from[i], share: s[i], end: end[i], gap: gap[i] };
+                n[i] = [kept.number(u[i][0]), u[i][1]];
+            }
+        }
+        Self { lobe, v: v_rest, u: u_rest, numbers: n_rest, share: s_rest }
+    }
+}
+
+impl<V: Copy + Into<[f32; 3]>> Work for Narrowed<'_, V> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Self {
+        self.groups::<L>()
     }
 }
 
@@ -406,9 +457,9 @@ struct Kept<T> {
 
 impl Kept<f32x4> {
     #[inline(always)]
-    fn lane(&self, i: usize) -> Kept<f32> {
-        let Self { from, share, end, gap } = *self;
-        let [from, share, end, gap] = [from, share, end, gap].map(|x| x.to_array()[i]);
+    fn first(self) -> Kept<f32> {
+        let Self { from, share, end, gap } = self;
+        let [from, share, end, gap] = [from, share, end, gap].map(|x| x.to_array()[0]);
         Kept { from, share, end, gap }
     }
 }
@@ -488,12 +539,12 @@ mod tests {
             for i in 0..331 {
                 let at = rows * i as f32 / 330.0;
                 let table = lobe.slices.rows_at(at).unwrap();
-                let view = Nodes::new(f32x4::splat(at / SHARED as f32)).at(0);
+                let view = Nodes::new(f32x4::splat(at / SHARED as f32)).first();
                 for j in 0..=500 {
                     let x = -1.0 + j as f32 / 250.0;
                     let exact = lobe.slices.number_along(&table, x.into(), (1.0 - x.abs()).into());
                     let half = 0.5 * CELLS as f32;
-                    let slope = Nodes::new(f32x4::splat(x * half + half)).at(0);
+                    let slope = Nodes::new(f32x4::splat(x * half + half)).first();
                     let [low, high] =
                         [0, 1].map(|end| f64::from(bounded.by_ref().limit(view, slope, end)));
                     assert!(low <= exact && exact <= high, "{gamma} {at} {x}: {low} {exact}");

@@ -4,19 +4,19 @@ use alloc::vec::Vec;
 
 use microfacet_core::math::{sqrt, within};
 use microfacet_core::shape::{S_END, gamma_of_s};
+use microfacet_lanes::{Ints, Lanes, f32x4};
 use microfacet_tables::axis::half_tangent::Lines;
 use microfacet_tables::axis::hermite::{
-    Cell, Node, basis, cubic, cubic_lanes, hermite, hermite_lanes,
+    Cell, Node, basis, coefficients, cubic, cubic_lanes, hermite, hermite_lanes,
 };
 use microfacet_tables::axis::{MirroredRoot, Rational};
 use microfacet_tables::{Interpolation, Kind, Mapping, Table};
-use wide::f32x4;
 
 use super::heavy::{self, Tail, cell_of_share, cells_of_share};
 use super::lanes::sum;
 use super::normals::PowerLaw;
 use super::slices::{Slice, Slices, ascending_across, ascending_rows};
-use super::surface::{LANES, Shape, moment_of};
+use super::surface::{Shape, Shapes, moment_of};
 use super::windows::{Planes, Window, Windows};
 
 /// Stands for γ = ∞: the reciprocal of γ − 1, and its square, are still normal numbers.
@@ -208,17 +208,6 @@ impl<'a> AtShape<'a> {
         self.part.exact(self.gamma)
     }
 
-    /// [`areas`](Self::areas) at four views.
-    #[inline(always)]
-    fn areas_of_four(self, at: f32x4) -> [f32x4; 2] {
-        let (cells, w) = cell_of_share(at);
-        let cells = cells.to_array().map(|cell| cell as u32 as usize);
-        let rests = cells.map(|cell| f32x4::new(self.part.rests.cell(self.masking, cell)));
-        let rhos =
-            cells.map(|cell| f32x4::new(self.part.rhos.get(cell).copied().unwrap_or_default()));
-        [rhos, rests].map(|cells| cubic_lanes(f32x4::transpose(cells), w))
-    }
-
     /// The area of the heavy part and the rest, at a view coordinate in rows; NaN for NaN.
     #[inline(always)]
     fn areas(self, at: f32) -> [f32; 2] {
@@ -226,6 +215,116 @@ impl<'a> AtShape<'a> {
         let (cell, w) = (cell.to_array()[0] as u32 as usize, w.to_array()[0]);
         let rest = cubic(&self.part.rests.cell(self.masking, cell), w);
         self.part.rhos.get(cell).map_or([f32::NAN; 2], |rho| [cubic(rho, w), rest])
+    }
+}
+
+/// Shapes of one part: one for each lane, or one for all.
+#[derive(Clone, Copy)]
+pub(super) struct PerLane<'a>(pub(super) &'a [AtShape<'a>]);
+
+impl<'a> PerLane<'a> {
+    #[inline(always)]
+    fn part(self) -> &'a Part {
+        self.0[0].part
+    }
+
+    #[inline(always)]
+    fn at(self, lane: usize) -> &'a AtShape<'a> {
+        &self.0[lane.min(self.0.len() - 1)]
+    }
+}
+
+impl Shapes for PerLane<'_> {
+    #[inline(always)]
+    fn s_lanes<L: Lanes>(self) -> L {
+        L::from_fn(|i| self.at(i).s)
+    }
+
+    #[inline(always)]
+    fn peeled(self) -> bool {
+        !self.part().rests.is_empty()
+    }
+
+    #[inline(always)]
+    fn lines(self) -> Lines {
+        self.part().lines
+    }
+
+    #[inline(always)]
+    fn half(self) -> u32 {
+        self.part().half
+    }
+
+    #[inline(always)]
+    fn scales(self) -> [f32; 2] {
+        self.part().scales
+    }
+
+    #[inline(always)]
+    fn between_lanes<L: Lanes>(self, low: L::Ints, w: L) -> [L; 4] {
+        let (low, w, stride) = (low.to_array(), w.to_array(), 2 * self.part().half as usize);
+        L::columns(|i| self.at(i).between(low[i] as usize, low[i] as usize + stride, w[i]))
+    }
+
+    #[inline(always)]
+    fn across_lanes<L: Lanes>(self, cells: L::Ints, w: L) -> L {
+        let (table, cells) = (&self.part().across, cells.to_array());
+        let pair = |i: usize| table.pair_or_nan(self.at(i).across, cells[i]);
+        hermite_lanes(L::columns(pair), w)
+    }
+
+    #[inline(always)]
+    fn parts<L: Lanes>(self, u: L, at: L) -> [L; 2] {
+        let (cells, w) = cell_of_share(at);
+        let (part, places) = (self.part(), cells.to_array());
+        let rest = |i: usize| part.rests.cell(self.at(i).masking, places[i] as u32 as usize);
+        let rest = cubic_lanes(L::columns(|i| f32x4::new(rest(i))), w);
+        let heavy = cubic_lanes(coefficients(&part.rhos, cells), w);
+        heavy::parts_of_areas(u, heavy, rest)
+    }
+
+    #[inline(always)]
+    fn tails<L: Lanes>(self) -> [L; 2] {
+        let tail = |i: usize| self.at(i).tail;
+        [L::from_fn(|i| tail(i).exponent), L::from_fn(|i| tail(i).root_s)]
+    }
+
+    #[inline(always)]
+    fn masking_view(self) -> (Rational, f32) {
+        (self.part().masking_view, self.part().masking_cells)
+    }
+
+    #[inline(always)]
+    fn masking_lanes<L: Lanes>(self, cells: L::Ints, w: L) -> L {
+        let (table, cells) = (&self.part().masking, cells.to_array());
+        let pair = |i: usize| table.pair_or_nan(self.at(i).masking, cells[i]);
+        hermite_lanes(L::columns(pair), w)
+    }
+}
+
+/// Those of one shape for all lanes.
+macro_rules! for_all_lanes {
+    ($(fn $name:ident$(<$lanes:ident>)?($($value:ident: $type:ty),*) -> $out:ty;)*) => {$(
+        #[inline(always)]
+        fn $name$(<$lanes: Lanes>)?(self $(, $value: $type)*) -> $out {
+            PerLane(&[self]).$name($($value),*)
+        }
+    )*};
+}
+
+impl Shapes for AtShape<'_> {
+    for_all_lanes! {
+        fn s_lanes<L>() -> L;
+        fn peeled() -> bool;
+        fn lines() -> Lines;
+        fn half() -> u32;
+        fn scales() -> [f32; 2];
+        fn between_lanes<L>(low: L::Ints, w: L) -> [L; 4];
+        fn across_lanes<L>(cells: L::Ints, w: L) -> L;
+        fn parts<L>(u: L, at: L) -> [L; 2];
+        fn tails<L>() -> [L; 2];
+        fn masking_view() -> (Rational, f32);
+        fn masking_lanes<L>(cells: L::Ints, w: L) -> L;
     }
 }
 
@@ -246,26 +345,6 @@ impl<'a> Shape for AtShape<'a> {
     #[inline(always)]
     fn s(self) -> f32 {
         self.s
-    }
-
-    #[inline(always)]
-    fn peeled(self) -> bool {
-        !self.part.rests.is_empty()
-    }
-
-    #[inline(always)]
-    fn lines(self) -> Lines {
-        self.part.lines
-    }
-
-    #[inline(always)]
-    fn half(self) -> u32 {
-        self.part.half
-    }
-
-    #[inline(always)]
-    fn scales(self) -> [f32; 2] {
-        self.part.scales
     }
 
     /// The reads test themselves.
@@ -293,11 +372,6 @@ impl<'a> Shape for AtShape<'a> {
     }
 
     #[inline(always)]
-    fn across_lanes(self, cells: [i32; LANES], w: f32x4) -> f32x4 {
-        hermite_lanes(self.part.across.pairs(self.across, cells), w)
-    }
-
-    #[inline(always)]
     fn share(self, at: f32) -> f32 {
         let [heavy, rest] = self.areas(at);
         heavy / (heavy + rest)
@@ -311,30 +385,8 @@ impl<'a> Shape for AtShape<'a> {
     }
 
     #[inline(always)]
-    fn shares(self, at: f32x4) -> f32x4 {
-        let [heavy, rest] = self.areas_of_four(at);
-        heavy / (heavy + rest)
-    }
-
-    #[inline(always)]
-    fn parts(self, u: f32x4, at: f32x4) -> [f32x4; 2] {
-        let [heavy, rest] = self.areas_of_four(at);
-        heavy::parts_of_areas(u, heavy, rest)
-    }
-
-    #[inline(always)]
-    fn tail(self) -> Tail {
-        self.tail
-    }
-
-    #[inline(always)]
     fn kappa(self) -> f32 {
         self.kappa
-    }
-
-    #[inline(always)]
-    fn masking_view(self) -> (Rational, f32) {
-        (self.part.masking_view, self.part.masking_cells)
     }
 
     #[inline(always)]
@@ -356,11 +408,6 @@ impl<'a> Shape for AtShape<'a> {
         // Lanes [v0, v0, …] of both, and so on, by one transposition.
         let nodes = f32x4::transpose([a, b, a, b]);
         Some(hermite_lanes(nodes, w))
-    }
-
-    #[inline(always)]
-    fn masking_lanes(self, cells: [i32; LANES], w: f32x4) -> f32x4 {
-        hermite_lanes(self.part.masking.pairs(self.masking, cells), w)
     }
 
     #[inline(always)]

@@ -5,18 +5,22 @@ use core::f32::consts::FRAC_1_PI;
 use glam::Vec3;
 use microfacet_core::math::{sqrt, unit};
 use microfacet_core::{Masking, Roughness, saturated};
+use microfacet_lanes::{Lanes, Work, f32x4, widest};
+use microfacet_tables::axis::above_zero;
 
 use super::batch::Batch;
 use super::distribution::{Facet, MicrofacetDistribution, SMOOTH, visible_density};
+use super::heavy::units;
 use super::horizon::{above_horizon, face};
 use super::key::LobeKey;
+use super::lanes::many::{above_horizon as raised_to_horizon, components, facing};
 use super::pseudo::{LAST, PseudoVisible, normal};
 use super::reflecting::Reflecting;
 use super::roughness::checked;
 use super::surface::{LONG, LONGEST, SHORT};
 use super::tabulated::Tabulated;
-use crate::elementary::turn;
-use crate::error::MaterialError;
+use crate::elementary::{turn, turns};
+use crate::error::{BatchError, MaterialError, same_lengths};
 use crate::vector::vec3;
 
 /// GGX (Trowbridge–Reitz), the member γ = 2 of the family, from closed forms alone, without tables.
@@ -167,7 +171,86 @@ impl Tabulated for Ggx {
     }
 }
 
-impl Batch for Ggx {}
+impl Batch for Ggx {
+    fn sample_batch<V: Copy + Into<[f32; 3]>, M: From<[f32; 3]>>(
+        &self,
+        v: &[V],
+        u: &[[f32; 2]],
+        m: &mut [M],
+    ) -> Result<(), BatchError> {
+        same_lengths(&[("v", v.len()), ("u", u.len()), ("m", m.len())])?;
+        let done = widest(Normals { lobe: *self, v, u, m });
+        let (v, u, m) = (&v[done..], &u[done..], &mut m[done..]);
+        // What does not fill more lanes may fill four.
+        let done = self.sample_groups::<f32x4, V, M>(v, u, m);
+        for ((v, u), m) in v[done..].iter().zip(&u[done..]).zip(&mut m[done..]) {
+            *m = self.sample_visible_normal(*v, *u).into();
+        }
+        Ok(())
+    }
+}
+
+impl Ggx {
+    /// Normals of all views but those too few to fill lanes; how many they are.
+    #[inline(always)]
+    fn sample_groups<L: Lanes, V: Copy + Into<[f32; 3]>, M: From<[f32; 3]>>(
+        self,
+        v: &[V],
+        u: &[[f32; 2]],
+        m: &mut [M],
+    ) -> usize {
+        let groups = v.chunks_exact(L::WIDTH).zip(u.chunks_exact(L::WIDTH));
+        for ((v, u), m) in groups.zip(m.chunks_exact_mut(L::WIDTH)) {
+            let u = [L::from_fn(|i| u[i][0]), L::from_fn(|i| u[i][1])];
+            let views = components(v);
+            let normals = raised_to_horizon(self.along_lanes(views, u), L::splat(1.0));
+            let [x, y, z] = facing(normals, views, L::splat(0.0));
+            let (x, y, z) = (x.to_array(), y.to_array(), z.to_array());
+            m.iter_mut().enumerate().for_each(|(i, m)| *m = M::from([x[i], y[i], z[i]]));
+        }
+        v.len() - v.len() % L::WIDTH
+    }
+
+    /// [`along`](Self::along) in lanes.
+    #[inline(always)]
+    fn along_lanes<L: Lanes>(self, [x, y, z]: [L; 3], u: [L; 2]) -> [L; 3] {
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let (mut x, mut y, mut z) = (x * self.alpha_x, y * self.alpha_y, above_zero(z));
+        let mut length = (x * x + y * y + z * z).sqrt();
+        let common = length.simd_ge(L::splat(SHORT)) & length.simd_le(L::splat(LONG));
+        if !common.all() {
+            // As `lifted`.
+            let tilted = length.simd_gt(zero) & length.simd_le(L::splat(LONGEST));
+            x = common.select(x, tilted & (x / length));
+            y = common.select(y, tilted & (y / length));
+            z = common.select(z, tilted.select(z / length, one));
+            length = common.select(length, one);
+        }
+        let height = (one - units(u[0])).fast_max(L::splat(LAST)) * (length + z);
+        let cap = height - z;
+        let radius = ((length - cap) * (length + cap)).fast_max(zero).sqrt();
+        let [sin, cos] = turns(units(u[1]));
+        let (x, y) = (x + radius * cos, y + radius * sin);
+        [x * self.alpha_x, y * self.alpha_y, height]
+    }
+}
+
+/// [`Ggx::sample_groups`].
+struct Normals<'a, V, M> {
+    lobe: Ggx,
+    v: &'a [V],
+    u: &'a [[f32; 2]],
+    m: &'a mut [M],
+}
+
+impl<V: Copy + Into<[f32; 3]>, M: From<[f32; 3]>> Work for Normals<'_, V, M> {
+    type Output = usize;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> usize {
+        self.lobe.sample_groups::<L, V, M>(self.v, self.u, self.m)
+    }
+}
 
 /// A stretched view of unit length, since the squares of a short or long one would leave the range
 /// of f32; the null vector, and one whose own square does, count as normal incidence.

@@ -4,15 +4,16 @@
 //! The first random number chooses between the table and the tail by their shares of the visible
 //! area. The share of the tail is M₀ρ/area, the term x sin θ p(x) for x > 0, with M₀ = κ/(G1/q at
 //! grazing); a lobe tabulates it over the view coordinate of the table, so that it needs neither a
-//! division nor a root. A single sample branches between table and tail; four lanes compute both
-//! and select.
+//! division nor a root. A single sample branches between table and tail; lanes compute both and
+//! select.
 
 use alloc::vec::Vec;
 
-use wide::{f32x4, i32x4};
-
 use microfacet_core::math::unit;
-use microfacet_tables::axis::hermite::{Cell, cubic, cubic_lanes, cubic_through_thirds, split};
+use microfacet_lanes::{Lanes, f32x4};
+use microfacet_tables::axis::hermite::{
+    Cell, coefficients, cubic, cubic_lanes, cubic_through_thirds, split,
+};
 
 use crate::elementary::{exp2, log2};
 
@@ -22,7 +23,7 @@ pub(super) const CELLS_PER_ROW: usize = 2;
 
 /// The cells of the share at view coordinates in rows, and the positions in them.
 #[inline(always)]
-pub(super) fn cell_of_share(at: f32x4) -> (i32x4, f32x4) {
+pub(super) fn cell_of_share<L: Lanes>(at: L) -> (L::Ints, L) {
     split(at * CELLS_PER_ROW as f32)
 }
 
@@ -73,48 +74,50 @@ impl Heavy {
         cell.map_or(0.0, |cell| cubic(cell, w.to_array()[0]))
     }
 
-    /// The shares at four view coordinates in rows.
+    /// The shares at view coordinates in rows.
     #[inline(always)]
-    pub(crate) fn shares(
-        &self,
-        at: f32x4,
-        look_up: impl FnOnce(&[Cell], [i32; 4]) -> [f32x4; 4],
-    ) -> f32x4 {
+    pub(crate) fn shares<L: Lanes>(&self, at: L) -> L {
         let (cell, w) = cell_of_share(at);
-        cubic_lanes(look_up(&self.shares, cell.to_array()), w)
+        cubic_lanes(coefficients(&self.shares, cell), w)
     }
 }
 
 impl Tail {
-    /// Half of x, and z, of the heavy part's slopes x : z at numbers descending from 1 to 0, and a
-    /// factor on z.
-    ///
-    /// The factor is kept apart until normals are of unit length: slopes of 10³⁰ occur, and
-    /// products of z would be subnormal, each of which costs as much as a whole sample.
+    /// See [`half_slopes`].
     #[inline(always)]
-    pub(crate) fn half_slopes(&self, number: f32x4) -> [f32x4; 3] {
-        // (1 + s x²)^(−k) = ξ, so 1/√(1 + s x²) = ξ^(1/2k) = ζ and (x : 1) = (√(1−ζ²) : √s ζ).
-        const LEAST: f32 = 1e-15;
-        // For ζ below 2⁻¹⁰⁰ every normal has the smallest cosine.
-        let zeta = exp2((log2(number) * self.exponent).fast_max(f32x4::splat(-100.0)));
-        let x = ((1.0 - zeta) * (1.0 + zeta)).fast_max(f32x4::ZERO).sqrt();
-        let large = zeta.fast_max(f32x4::splat(LEAST));
-        [x * 0.5, large * self.root_s, zeta / large]
+    pub(crate) fn in_lanes<L: Lanes>(&self) -> [L; 2] {
+        [L::splat(self.exponent), L::splat(self.root_s)]
     }
+}
 
-    /// The number of the slope x : z of the heavy part, x > 0, z ≥ 0: the share of its slopes that
-    /// are steeper, to 1e-7 absolute.
-    #[inline(always)]
-    pub(crate) fn number_above(&self, x: f32x4, z: f32x4) -> f32x4 {
-        /// Of steeper slopes the square is out of range; the number counts as 0.
-        const STEEPEST: f32 = 1e18;
-        let slope = (x / z).fast_min(f32x4::splat(STEEPEST));
-        let scaled = slope * self.root_s;
-        // (1 + s x²)^(−k), with the exponent 1/2k.
-        let power = -0.5 / self.exponent;
-        let number = exp2(log2(1.0 + scaled * scaled) * power);
-        slope.simd_lt(STEEPEST) & number
-    }
+/// Half of x, and z, of the heavy part's slopes x : z at numbers descending from 1 to 0, and a
+/// factor on z.
+///
+/// The factor is kept apart until normals are of unit length: slopes of 10³⁰ occur, and
+/// products of z would be subnormal, each of which costs as much as a whole sample.
+#[inline(always)]
+pub(crate) fn half_slopes<L: Lanes>(number: L, [exponent, root_s]: [L; 2]) -> [L; 3] {
+    // (1 + s x²)^(−k) = ξ, so 1/√(1 + s x²) = ξ^(1/2k) = ζ and (x : 1) = (√(1−ζ²) : √s ζ).
+    const LEAST: f32 = 1e-15;
+    // For ζ below 2⁻¹⁰⁰ every normal has the smallest cosine.
+    let zeta = exp2((log2(number) * exponent).fast_max(L::splat(-100.0)));
+    let x = ((L::splat(1.0) - zeta) * (zeta + 1.0)).fast_max(L::splat(0.0)).sqrt();
+    let large = zeta.fast_max(L::splat(LEAST));
+    [x * 0.5, large * root_s, zeta / large]
+}
+
+/// The number of the slope x : z of the heavy part, x > 0, z ≥ 0: the share of its slopes that are
+/// steeper, to 1e-7 absolute.
+#[inline(always)]
+pub(crate) fn number_above<L: Lanes>([x, z]: [L; 2], [exponent, root_s]: [L; 2]) -> L {
+    /// Of steeper slopes the square is out of range; the number counts as 0.
+    const STEEPEST: f32 = 1e18;
+    let steepest = L::splat(STEEPEST);
+    let slope = (x / z).fast_min(steepest);
+    let scaled = slope * root_s;
+    // (1 + s x²)^(−k), with the exponent 1/2k.
+    let number = exp2(log2(scaled * scaled + 1.0) * (L::splat(-0.5) / exponent));
+    slope.simd_lt(steepest) & number
 }
 
 /// A random number along the plane of incidence, within the part of the distribution that it
@@ -151,24 +154,29 @@ impl Part {
 /// first, and the heavy one: the number within its part, and all ones where that part is the heavy
 /// one.
 #[inline(always)]
-pub(crate) fn parts(u: f32x4, share: f32x4) -> [f32x4; 2] {
-    let unit = |x: f32x4| (x & x.simd_gt(0.0)).fast_min(f32x4::ONE);
-    let (u, rest) = (unit(u), 1.0 - share);
+pub(crate) fn parts<L: Lanes>(u: L, share: L) -> [L; 2] {
+    let (u, one) = (units(u), L::splat(1.0));
+    let rest = one - share;
     // Straight from above the heavy part has no share, and u = 1 still belongs to the table.
     let heavy = u.simd_gt(rest);
-    [unit(heavy.select(1.0 - u, u) / heavy.select(share, rest)), heavy]
+    [units(heavy.select(one - u, u) / heavy.select(share, rest)), heavy]
 }
 
-/// [`Part::of_areas`] of four numbers, as [`parts`].
+/// [`Part::of_areas`] of numbers in lanes, as [`parts`].
 #[inline(always)]
-pub(crate) fn parts_of_areas(u: f32x4, heavy: f32x4, rest: f32x4) -> [f32x4; 2] {
-    let u = (u & u.simd_gt(0.0)).fast_min(f32x4::ONE);
+pub(crate) fn parts_of_areas<L: Lanes>(u: L, heavy: L, rest: L) -> [L; 2] {
+    let (u, one) = (units(u), L::splat(1.0));
     let whole = heavy + rest;
     let is_heavy = (u * whole).simd_gt(rest);
-    let least = f32x4::splat(f32::MIN_POSITIVE);
-    let rest = rest.simd_gt(0.0).select(rest, least);
-    let number = is_heavy.select(1.0 - u, u) * whole / is_heavy.select(heavy, rest);
-    [number.fast_min(f32x4::ONE), is_heavy]
+    let rest = rest.simd_gt(L::splat(0.0)).select(rest, L::splat(f32::MIN_POSITIVE));
+    let number = is_heavy.select(one - u, u) * whole / is_heavy.select(heavy, rest);
+    [number.fast_min(one), is_heavy]
+}
+
+/// Clamped to [0, 1], NaN to 0.
+#[inline(always)]
+pub(super) fn units<L: Lanes>(x: L) -> L {
+    (x & x.simd_gt(L::splat(0.0))).fast_min(L::splat(1.0))
 }
 
 #[cfg(test)]
@@ -176,6 +184,7 @@ mod tests {
     use glam::Vec3;
     use wide::f32x4;
 
+    use super::{half_slopes, number_above};
     use crate::material::surface::Shape as _;
     use crate::{MicrofacetDistribution, Tables};
 
@@ -198,11 +207,13 @@ mod tests {
     fn numbers_above_slopes_are_those_that_draw_them() {
         for gamma in [1.501, 1.55, 1.6, 1.79] {
             let tail = Tables::embedded().student_t(1.0, gamma).unwrap().slices.heavy.tail;
-            let number =
-                |x: f32, z: f32| tail.number_above(f32x4::splat(x), f32x4::splat(z)).to_array()[0];
+            let number = |x: f32, z: f32| {
+                number_above([x, z].map(f32x4::splat), tail.in_lanes()).to_array()[0]
+            };
             for i in 0..=1000 {
                 let exact = i as f32 / 1000.0;
-                let [half, z, factor] = tail.half_slopes(f32x4::splat(exact)).map(|x| x.to_array());
+                let [half, z, factor] =
+                    half_slopes(f32x4::splat(exact), tail.in_lanes()).map(|x| x.to_array());
                 let slope = [2.0 * half[0], z[0] * factor[0]];
                 // Cosines that are as good as 0 are of slopes that no view reflects upwards.
                 if slope[1] > 1e-18 {

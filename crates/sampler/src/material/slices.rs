@@ -3,21 +3,20 @@
 use alloc::vec::Vec;
 
 use microfacet_core::shape::s_of_gamma;
+use microfacet_lanes::{Ints, Lanes, f32x4};
 use microfacet_tables::axis::half_tangent::Lines;
 use microfacet_tables::axis::hermite::{
-    Cell, Node, cubic, cubic_cells, cubic_lanes, horner, horner_lanes, make_monotone,
+    Cell, Node, coefficients, cubic, cubic_cells, cubic_lanes, horner, horner_lanes, make_monotone,
 };
 use microfacet_tables::axis::{HalfTangent, MirroredRoot, Rational};
 use microfacet_tables::{Axis, Kind, Mapping, Table, Weights};
-use wide::f32x4;
 
 use super::coverage::{self, end_weights, shape_weights};
-use super::heavy::{Heavy, Tail};
-use super::lanes::four::coefficients;
+use super::heavy::{self, Heavy};
 use super::lanes::one::pair;
 use super::lanes::swap_halves;
 use super::normals::Normals;
-use super::surface::{LANES, Shape, moment_of};
+use super::surface::{Shape, Shapes, moment_of};
 use crate::error::MaterialError;
 
 /// A (value, slope) table without its γ axis.
@@ -208,23 +207,10 @@ impl Slices {
     }
 }
 
-impl<'a> Shape for &'a Slices {
-    type Seed = Self;
-    type MaskingCell = &'a Cell;
-
+impl Shapes for &Slices {
     #[inline(always)]
-    fn seed(self) -> Self {
-        self
-    }
-
-    #[inline(always)]
-    fn of_seed(seed: Self) -> Self {
-        seed
-    }
-
-    #[inline(always)]
-    fn s(self) -> f32 {
-        self.s
+    fn s_lanes<L: Lanes>(self) -> L {
+        L::splat(self.s)
     }
 
     #[inline(always)]
@@ -248,6 +234,61 @@ impl<'a> Shape for &'a Slices {
     }
 
     #[inline(always)]
+    fn between_lanes<L: Lanes>(self, low: L::Ints, w: L) -> [L; 4] {
+        let (nodes, low) = (&self.slope[..], low.to_array());
+        let stride = 2 * (self.half_cells + 1);
+        let read = |at: usize| {
+            if at + 2 > nodes.len() { f32x4::splat(f32::NAN) } else { pair(nodes, at) }
+        };
+        L::columns_between(|i| read(low[i] as usize), |i| read(low[i] as usize + stride), w)
+    }
+
+    #[inline(always)]
+    fn across_lanes<L: Lanes>(self, cells: L::Ints, w: L) -> L {
+        cubic_lanes(coefficients(&self.across_cells, cells), w)
+    }
+
+    #[inline(always)]
+    fn parts<L: Lanes>(self, u: L, at: L) -> [L; 2] {
+        heavy::parts(u, self.heavy.shares(at))
+    }
+
+    #[inline(always)]
+    fn tails<L: Lanes>(self) -> [L; 2] {
+        self.heavy.tail.in_lanes()
+    }
+
+    #[inline(always)]
+    fn masking_view(self) -> (Rational, f32) {
+        (self.shadowing_view, self.shadowing_cells)
+    }
+
+    #[inline(always)]
+    fn masking_lanes<L: Lanes>(self, cells: L::Ints, w: L) -> L {
+        horner_lanes(coefficients(&self.shadowing, cells), w)
+    }
+}
+
+impl<'a> Shape for &'a Slices {
+    type Seed = Self;
+    type MaskingCell = &'a Cell;
+
+    #[inline(always)]
+    fn seed(self) -> Self {
+        self
+    }
+
+    #[inline(always)]
+    fn of_seed(seed: Self) -> Self {
+        seed
+    }
+
+    #[inline(always)]
+    fn s(self) -> f32 {
+        self.s
+    }
+
+    #[inline(always)]
     fn reads(self, high: usize, across: usize) -> bool {
         high + 2 <= self.slope.len() && across < self.across_cells.len()
     }
@@ -268,33 +309,13 @@ impl<'a> Shape for &'a Slices {
     }
 
     #[inline(always)]
-    fn across_lanes(self, cells: [i32; LANES], w: f32x4) -> f32x4 {
-        cubic_lanes(coefficients(&self.across_cells, cells), w)
-    }
-
-    #[inline(always)]
     fn share(self, at: f32) -> f32 {
         self.heavy.share(at)
     }
 
     #[inline(always)]
-    fn shares(self, at: f32x4) -> f32x4 {
-        self.heavy.shares(at, coefficients)
-    }
-
-    #[inline(always)]
-    fn tail(self) -> Tail {
-        self.heavy.tail
-    }
-
-    #[inline(always)]
     fn kappa(self) -> f32 {
         self.kappa
-    }
-
-    #[inline(always)]
-    fn masking_view(self) -> (Rational, f32) {
-        (self.shadowing_view, self.shadowing_cells)
     }
 
     #[inline(always)]
@@ -317,11 +338,6 @@ impl<'a> Shape for &'a Slices {
         let ([wa, wb, ..], square) = (w.to_array(), w * w);
         let terms = (low + square * high) * f32x4::new([1.0, 1.0, wa, wb]);
         Some(terms + swap_halves(terms))
-    }
-
-    #[inline(always)]
-    fn masking_lanes(self, cells: [i32; LANES], w: f32x4) -> f32x4 {
-        horner_lanes(coefficients(&self.shadowing, cells), w)
     }
 
     #[inline(always)]

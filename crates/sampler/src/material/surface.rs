@@ -10,34 +10,25 @@ use core::f32::consts::PI;
 use glam::Vec3;
 use microfacet_core::Masking;
 use microfacet_core::math::sqrt;
+use microfacet_lanes::{Lanes, f32x4};
 use microfacet_tables::axis::Rational;
 use microfacet_tables::axis::half_tangent::Lines;
 use microfacet_tables::axis::hermite::split;
-use wide::f32x4;
 
 use super::batch::Batch;
 use super::distribution::{
     Facet, GRAZING, MicrofacetDistribution, SMOOTH, SMOOTH_MASKED, visible_density,
 };
-use super::heavy::{Part, Tail, parts};
+use super::heavy::Part;
 use super::reflecting::Reflecting;
 use crate::error::{BatchError, same_lengths};
 use crate::vector::vec3;
 
-/// Directions that lookups take at once.
-pub(crate) const LANES: usize = 4;
-
-/// What lookups read of one shape. Indices are of nodes and cells; one that is out of range, as NaN
-/// gives, is answered by NaN or `None`.
-pub(crate) trait Shape: Copy {
-    /// What a shape is found by again: for calls out of line, whose arguments are in registers.
-    type Seed: Copy;
-
-    fn seed(self) -> Self::Seed;
-    fn of_seed(seed: Self::Seed) -> Self;
-
+/// What lookups in lanes read of the shapes of their lanes. Indices are of nodes and cells; one
+/// that is out of range, as NaN gives, is answered by NaN or 0.
+pub(crate) trait Shapes: Copy {
     /// s = 1/(γ−1).
-    fn s(self) -> f32;
+    fn s_lanes<L: Lanes>(self) -> L;
     /// Whether a part of the visible normals, the [heavy](super::heavy) one, is not in the tables.
     fn peeled(self) -> bool;
 
@@ -47,40 +38,69 @@ pub(crate) trait Shape: Copy {
     fn half(self) -> u32;
     /// Factors from min(u, 1−u)^¼ to cells, along the plane of incidence and across it.
     fn scales(self) -> [f32; 2];
+    /// (value, slope) of a node and the next, linear in w between their row and the row after it.
+    fn between_lanes<L: Lanes>(self, low: L::Ints, w: L) -> [L; 4];
+    /// The distance of the slope across from its end, in a cell.
+    fn across_lanes<L: Lanes>(self, cells: L::Ints, w: L) -> L;
+
+    /// The number along the plane of incidence within the part that it selects, at a view
+    /// coordinate in rows, and all ones where that is the heavy part.
+    fn parts<L: Lanes>(self, u: L, at: L) -> [L; 2];
+    /// The constants of [`half_slopes`](super::heavy::half_slopes).
+    fn tails<L: Lanes>(self) -> [L; 2];
+
+    /// The view coordinate of G1, and its number of cells.
+    fn masking_view(self) -> (Rational, f32);
+    /// G1/q over the number of cells.
+    fn masking_lanes<L: Lanes>(self, cells: L::Ints, w: L) -> L;
+
+    /// The coordinate of views in rows, and 1 − τ. The same bits whatever `HEAVY` is, which must be
+    /// true of a peeled table.
+    #[inline(always)]
+    fn place<const HEAVY: bool, L: Lanes>(self, rho: L, z: L, length: L) -> [L; 2] {
+        if HEAVY && self.peeled() {
+            self.lines().of_views::<true, _>(rho, z, length)
+        } else {
+            self.lines().of_views::<false, _>(rho, z, length)
+        }
+    }
+}
+
+/// What lookups of one direction read of one shape.
+pub(crate) trait Shape: Shapes {
+    /// What a shape is found by again: for calls out of line, whose arguments are in registers.
+    type Seed: Copy;
+
+    fn seed(self) -> Self::Seed;
+    fn of_seed(seed: Self::Seed) -> Self;
+
+    /// s = 1/(γ−1).
+    fn s(self) -> f32;
+
     /// Whether [`between`](Self::between) and [`across`](Self::across) hold a node and a cell: one
     /// test for all reads.
     fn reads(self, high: usize, across: usize) -> bool;
-    /// (value, slope) of a node and the next, linear in w between their rows.
+    /// As [`between_lanes`](Shapes::between_lanes).
     fn between(self, low: usize, high: usize, w: f32) -> f32x4;
-    /// The distance of the slope across from its end, in a cell.
+    /// As [`across_lanes`](Shapes::across_lanes).
     fn across(self, cell: usize, w: f32) -> f32;
-    fn across_lanes(self, cells: [i32; LANES], w: f32x4) -> f32x4;
 
     /// The share of the heavy part at a view coordinate in rows.
     fn share(self, at: f32) -> f32;
-    fn shares(self, at: f32x4) -> f32x4;
     /// The number along the plane of incidence within the part that it selects.
     #[inline(always)]
     fn part(self, u: f32, at: f32) -> Part {
         Part::of(u, self.share(at))
     }
-    /// The same of four numbers: the numbers, and all ones where the part is the heavy one.
-    #[inline(always)]
-    fn parts(self, u: f32x4, at: f32x4) -> [f32x4; 2] {
-        parts(u, self.shares(at))
-    }
-    fn tail(self) -> Tail;
 
-    /// κ of the view coordinate of G1; the coordinate, and its number of cells.
+    /// κ of the view coordinate of G1.
     fn kappa(self) -> f32;
-    fn masking_view(self) -> (Rational, f32);
     /// G1/q over the number of cells: a cell of it, and its value there.
     type MaskingCell;
     fn masking_cell(self, cell: usize) -> Option<Self::MaskingCell>;
     fn masking(cell: Self::MaskingCell, w: f32) -> f32;
     /// The same of a view and a light, in the first two lanes.
     fn masking_of_two(self, cells: [usize; 2], w: f32x4) -> Option<f32x4>;
-    fn masking_lanes(self, cells: [i32; LANES], w: f32x4) -> f32x4;
     /// M₀ = ∫₀^∞ x p(x) dx, the projected area per ρ at grazing: κ over the first value of G1/q.
     fn first_moment(self) -> f32;
 
@@ -88,22 +108,11 @@ pub(crate) trait Shape: Copy {
     /// vertical component and of its length, which need not be 1, and from 1/(πσxσy).
     fn d(self, r2: f32, z2: f32, length2: f32, scale: f32) -> f32;
 
-    /// The coordinate of four views in rows, and 1 − τ. The same bits whatever `HEAVY` is, which
-    /// must be true of a peeled table.
-    #[inline(always)]
-    fn place<const HEAVY: bool>(self, rho: f32x4, z: f32x4, length: f32x4) -> [f32x4; 2] {
-        if HEAVY && self.peeled() {
-            self.lines().of_views::<true>(rho, z, length)
-        } else {
-            self.lines().of_views::<false>(rho, z, length)
-        }
-    }
-
     /// The coordinate of one view in rows, equal to the sampler's to rounding.
     #[inline(always)]
     fn row(self, &Stretched { rho, z, .. }: &Stretched) -> f32 {
         let [rho, z, length] = [rho, z, sqrt(rho * rho + z * z)].map(f32x4::splat);
-        self.place::<true>(rho, z, length)[0].to_array()[0]
+        self.place::<true, _>(rho, z, length)[0].to_array()[0]
     }
 
     /// 1/(area of the microsurface seen along the stretched direction) = G1/z, finite at grazing.

@@ -19,6 +19,7 @@ use microfacet_tables::axis::half_tangent::{ends, ends_and_rate, rate_at, slope_
 use microfacet_tables::axis::hermite::{Cubic, Node, split};
 
 use super::distribution::MicrofacetDistribution as _;
+use super::heavy::half_slopes;
 use super::horizon::HORIZON;
 use super::lanes::first_three;
 use super::lanes::one::{Reads, draw_located};
@@ -184,7 +185,7 @@ impl Slices {
         let heavy = self.heavy_share(at);
         let (slope, along, is_end) = if let Some(number) = tail {
             // A slope of the heavy part may be anywhere in the table.
-            let [x, z, shrink] = self.heavy.tail.half_slopes(f32x4::splat(number));
+            let [x, z, shrink] = half_slopes(f32x4::splat(number), self.heavy.tail.in_lanes());
             let [x, z, shrink] = [x, z, shrink].map(|x| f64::from(x.to_array()[0]));
             let slope = InPlane::new(2.0 * x, z * shrink, self.s);
             let (along, is_end) = self.along(&self.rows_at(at)?, &slope, heavy);

@@ -11,8 +11,9 @@
 
 use glam::Vec3;
 use microfacet_core::math::unit;
-use wide::f32x4;
+use microfacet_lanes::{Lanes, f32x4};
 
+use super::heavy::number_above;
 use super::lanes::views::View;
 use super::surface::{Shape, Surface};
 
@@ -23,19 +24,20 @@ pub(super) const SLACK: f32 = 1e-6;
 /// the nearer end without cancellation. Of views with stretched horizontal length ρ, where that of
 /// the view itself is `sin`.
 #[inline(always)]
-pub(super) fn ends(rho: f32x4, cos: f32x4, sin: f32x4, sigma: f32) -> [[f32x4; 2]; 2] {
+pub(super) fn ends<L: Lanes>(rho: L, cos: L, sin: L, sigma: f32) -> [[L; 2]; 2] {
     // Slopes along the view's azimuth are sin/ρ unit slopes along the stretched azimuth. Where ρ
     // vanishes, so does sin, and the azimuth is that of x.
     const LITTLE: f32 = 1e-25;
     let (across, rho) = (sin + LITTLE, rho + LITTLE * sigma);
-    [(-cos, 1.0 + sin), (1.0 + sin, cos)].map(|(x, z)| [x * across, z * rho])
+    let (back, ahead) = (L::splat(0.0) - cos, sin + 1.0);
+    [[back * across, ahead * rho], [ahead * across, cos * rho]]
 }
 
 /// The random numbers that the heavy part, which is the last, loses of all: those of slopes steeper
 /// than x : z, of which none reflects upwards. `share` is that of the heavy part.
 #[inline(always)]
-pub(super) fn lost_above<S: Shape>(shape: S, share: f32x4, [x, z]: [f32x4; 2]) -> f32x4 {
-    (share * shape.tail().number_above(x, z) - SLACK).fast_max(f32x4::ZERO)
+pub(super) fn lost_above<S: Shape, L: Lanes>(shape: S, share: L, steepest: [L; 2]) -> L {
+    (share * number_above(steepest, shape.tails()) - SLACK).fast_max(L::splat(0.0))
 }
 
 impl<S: Shape> Surface<S> {
@@ -63,6 +65,6 @@ impl<S: Shape> Surface<S> {
         let sin = f32x4::splat(v.x * v.x + v.y * v.y).sqrt();
         let [_, steepest] = ends(rho, z, sin, self.scales.sigma[0]);
         let share = f32x4::splat(self.shape.share(at.to_array()[0]));
-        (1.0 - lost_above(self.shape, share, steepest)).to_array()[0]
+        1.0 - lost_above(self.shape, share, steepest).to_array()[0]
     }
 }

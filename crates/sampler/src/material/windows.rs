@@ -9,9 +9,9 @@
 use alloc::vec::Vec;
 
 use microfacet_core::shape::S_END;
+use microfacet_lanes::f32x4;
 use microfacet_tables::axis::hermite::{Cell, Node, cubic_through_thirds};
 use microfacet_tables::axis::lagrange;
-use wide::f32x4;
 
 use super::lanes::{pairs, swap_halves};
 
@@ -191,11 +191,10 @@ impl Planes<Node> {
         Some(combined([window.halves(low), window.halves(high)]))
     }
 
-    /// [`pair`](Self::pair) of four places, in lanes; NaN where there are none.
+    /// [`pair`](Self::pair), NaN where there are none.
     #[inline(always)]
-    pub(super) fn pairs(&self, window: Window, places: [i32; 4]) -> [f32x4; 4] {
-        let pair = |place| self.pair(window, place as u32 as usize).unwrap_or(NONE);
-        f32x4::transpose(places.map(pair))
+    pub(super) fn pair_or_nan(&self, window: Window, place: i32) -> f32x4 {
+        self.pair(window, place as u32 as usize).unwrap_or(NONE)
     }
 
     /// [`pair`](Self::pair), linear in w between a place and another.

@@ -7,8 +7,8 @@
 //! a division or a root, as the quotient ±2(1−g) : g(2−g), and the silhouette x = −cot θ is
 //! g = 1 − τ, linear in the coordinate τ of the view. Slopes are written x : z where z may be 0.
 
+use microfacet_lanes::{Lanes, f32x4};
 use serde::{Deserialize, Serialize};
-use wide::f32x4;
 
 use microfacet_core::math::{sqrt, sqrt64};
 
@@ -91,7 +91,7 @@ impl HalfTangent {
             None => z / (rho + length),
             Some(_) => {
                 let [rho, z, length] = [rho, z, length].map(f32x4::splat);
-                self.lines(1.0).of_views::<true>(rho, z, length)[0].to_array()[0]
+                self.lines(1.0).of_views::<true, _>(rho, z, length)[0].to_array()[0]
             }
         }
     }
@@ -111,21 +111,23 @@ pub struct Lines {
 }
 
 impl Lines {
-    /// The coordinate of four views, and r; `length` is √(ρ² + z²). Only with `PRECISE` does r keep
-    /// its digits next to normal incidence, where cells of a peeled table are as narrow as 7e-4 of
-    /// τ.
+    /// The coordinate of views in lanes, and r; `length` is √(ρ² + z²). Only with `PRECISE` does r
+    /// keep its digits next to normal incidence, where cells of a peeled table are as narrow as
+    /// 7e-4 of τ.
     #[inline(always)]
-    pub fn of_views<const PRECISE: bool>(&self, rho: f32x4, z: f32x4, length: f32x4) -> [f32x4; 2] {
+    pub fn of_views<const PRECISE: bool, L: Lanes>(&self, rho: L, z: L, length: L) -> [L; 2] {
         let rest = if PRECISE {
             // (ρ + (length − z))/(ρ + length) with length − z = ρ²/(length + z).
             let steep = length + z;
             rho * (steep + rho) / (steep * (rho + length))
         } else {
-            1.0 - z / (rho + length)
+            L::splat(1.0) - z / (rho + length)
         };
-        let [first, second, third] = self.slopes.map(|slope| rest * slope);
-        let first = self.slopes[0] - first;
-        [first.fast_max(self.second - second).fast_max(self.cells - third), rest]
+        let [first, second, third] = self.slopes;
+        let first = L::splat(first) - rest * first;
+        let second = L::splat(self.second) - rest * second;
+        let third = L::splat(self.cells) - rest * third;
+        [first.fast_max(second).fast_max(third), rest]
     }
 }
 
@@ -217,8 +219,8 @@ impl Slope {
 
 /// [`slope_at`] with −x/2 instead of x: (g − 1) : g(2 − g), one operation less.
 #[inline(always)]
-pub fn half_slope_at(g: f32x4) -> [f32x4; 2] {
-    [g - 1.0, g * (2.0 - g)]
+pub fn half_slope_at<L: Lanes>(g: L) -> [L; 2] {
+    [g - 1.0, g * (L::splat(2.0) - g)]
 }
 
 #[cfg(test)]
@@ -282,8 +284,8 @@ mod tests {
                 let got = f64::from(axis.of_view(rho, z));
                 assert!((got - exact).abs() < 3e-7, "{rho}, {z}: {got}");
                 let (lines, [rho, z]) = (axis.lines(80.0), [rho, z].map(lanes));
-                let plain = lines.of_views::<false>(rho, z, length);
-                for views in [lines.of_views::<true>(rho, z, length), plain] {
+                let plain = lines.of_views::<false, _>(rho, z, length);
+                for views in [lines.of_views::<true, _>(rho, z, length), plain] {
                     let [at, rest] = views.map(|x| f64::from(x.to_array()[2]));
                     assert!((at / 80.0 - exact).abs() < 3e-7);
                     let tau = HalfTangent::default().coordinate(z_over_rho);

@@ -6,9 +6,8 @@
 
 use alloc::vec::Vec;
 
-use wide::{f32x4, i32x4};
-
 use microfacet_core::math::sqrt64;
+use microfacet_lanes::{Ints, Lanes, f32x4};
 
 /// (value, slope) at a node, the slope per node index.
 pub type Node = [f32; 2];
@@ -39,13 +38,13 @@ pub fn basis(w: f32x4) -> f32x4 {
     c0 + w * (c1 + w * (c2 + w * c3))
 }
 
-/// [`hermite`] of four pairs of nodes, [value, slope, value, slope], at four positions.
+/// [`hermite`] of pairs of nodes in lanes, [value, slope, value, slope], each at its position.
 #[inline(always)]
-pub fn hermite_lanes([v0, s0, v1, s1]: [f32x4; 4], w: f32x4) -> f32x4 {
+pub fn hermite_lanes<L: Lanes>([v0, s0, v1, s1]: [L; 4], w: L) -> L {
     // `basis` without its zero terms, which changes no bit.
-    let b0 = 1.0 + w * (w * (w * 2.0 - 3.0));
-    let b1 = w * (1.0 + w * (w - 2.0));
-    let b2 = w * (w * (3.0 - w * 2.0));
+    let b0 = w * (w * (w * 2.0 - 3.0)) + 1.0;
+    let b1 = w * (w * (w - 2.0) + 1.0);
+    let b2 = w * (w * (L::splat(3.0) - w * 2.0));
     let b3 = w * (w * (w - 1.0));
     (v0 * b0 + v1 * b2) + (s0 * b1 + s1 * b3)
 }
@@ -80,16 +79,26 @@ pub fn cubic(c: &Cell, w: f32) -> f32 {
     (c[0] + w * c[1]) + (w * w) * (c[2] + w * c[3])
 }
 
-/// [`cubic`] of four cells at four positions.
+/// [`cubic`] of cells in lanes, each at its position.
 #[inline(always)]
-pub fn cubic_lanes([c0, c1, c2, c3]: [f32x4; 4], w: f32x4) -> f32x4 {
+pub fn cubic_lanes<L: Lanes>([c0, c1, c2, c3]: [L; 4], w: L) -> L {
     (c0 + w * c1) + (w * w) * (c2 + w * c3)
 }
 
-/// [`horner`] of four cells at four positions.
+/// [`horner`] of cells in lanes, each at its position.
 #[inline(always)]
-pub fn horner_lanes([c0, c1, c2, c3]: [f32x4; 4], w: f32x4) -> f32x4 {
+pub fn horner_lanes<L: Lanes>([c0, c1, c2, c3]: [L; 4], w: L) -> L {
     c0 + w * (c1 + w * (c2 + w * c3))
+}
+
+/// The coefficients of cells' cubics; 0 where there is no such cell.
+#[inline(always)]
+pub fn coefficients<L: Lanes>(cells: &[Cell], at: L::Ints) -> [L; 4] {
+    let at = at.to_array();
+    L::columns(|i| match cells.get(at[i] as u32 as usize) {
+        Some(cell) => f32x4::new(*cell),
+        None => f32x4::ZERO,
+    })
 }
 
 /// Splits coordinates in [0, cells] into cells, the guard cell included, and positions inside them.
@@ -97,9 +106,9 @@ pub fn horner_lanes([c0, c1, c2, c3]: [f32x4; 4], w: f32x4) -> f32x4 {
 /// The cast saturates only where the hardware's does; NaN gives a cell outside the table, or a NaN
 /// position.
 #[inline(always)]
-pub fn split(x: f32x4) -> (i32x4, f32x4) {
+pub fn split<L: Lanes>(x: L) -> (L::Ints, L) {
     let cell = x.fast_trunc_int();
-    (cell, x - f32x4::from_i32x4(cell))
+    (cell, x - L::from_ints(cell))
 }
 
 /// Two neighbouring nodes, each interpolated linearly between the rows `low` and `high` of a table.

@@ -1,8 +1,7 @@
 //! The axes of random numbers: fourth roots of the distance from either end.
 
-use wide::f32x4;
-
 use microfacet_core::math::sqrt;
+use microfacet_lanes::Lanes;
 
 use super::coordinate::Coordinate;
 
@@ -51,16 +50,17 @@ impl MirroredRoot {
 
 /// The numbers above 0, and 0 in place of others, of −0 and NaN as well.
 #[inline(always)]
-pub fn above_zero(x: f32x4) -> f32x4 {
+pub fn above_zero<L: Lanes>(x: L) -> L {
     // Of such a pair the maximum of SSE is the second number, that of other machines may be the
     // first.
-    if cfg!(target_feature = "sse2") { x.fast_max(f32x4::ZERO) } else { x & x.simd_gt(0.0) }
+    let zero = L::splat(0.0);
+    if cfg!(target_feature = "sse2") { x.fast_max(zero) } else { x & x.simd_gt(zero) }
 }
 
-/// min(u, 1−u)^¼ of four random numbers: t/⁴√2; 0 outside [0, 1] and for NaN.
+/// min(u, 1−u)^¼ of random numbers in lanes: t/⁴√2; 0 outside [0, 1] and for NaN.
 #[inline(always)]
-pub fn roots(u: f32x4) -> f32x4 {
-    above_zero(u.fast_min(1.0 - u)).sqrt().sqrt()
+pub fn roots<L: Lanes>(u: L) -> L {
+    above_zero(u.fast_min(L::splat(1.0) - u)).sqrt().sqrt()
 }
 
 impl Coordinate for MirroredRoot {
@@ -81,6 +81,8 @@ impl Coordinate for OddRoot {
 
 #[cfg(test)]
 mod tests {
+    use microfacet_lanes::f32x4;
+
     use super::*;
 
     #[test]

@@ -1,9 +1,8 @@
 //! The view axis of G1 and the slope axis of bounded distributions: x/(x + κ).
 
-use serde::{Deserialize, Serialize};
-use wide::f32x4;
-
 use microfacet_core::shape::S_END;
+use microfacet_lanes::Lanes;
+use serde::{Deserialize, Serialize};
 
 use super::coordinate::{Coordinate, positive};
 use super::crowded;
@@ -72,12 +71,12 @@ impl Rational {
         if self.crowded { crowded::fast(kappa * rho * r / cells) * cells } else { z * r }
     }
 
-    /// q and t, both times `cells`, of four views, given `across` = κρ.
+    /// q and t, both times `cells`, of views in lanes, given `across` = κρ.
     #[inline(always)]
-    pub fn of_views(&self, across: f32x4, z: f32x4, cells: f32) -> [f32x4; 2] {
+    pub fn of_views<L: Lanes>(&self, across: L, z: L, cells: f32) -> [L; 2] {
         let area = z + across;
         let q = z * cells / area;
-        [q, if self.crowded { (1.0 - (across / area).sqrt()) * cells } else { q }]
+        [q, if self.crowded { (L::splat(1.0) - (across / area).sqrt()) * cells } else { q }]
     }
 }
 
@@ -93,6 +92,8 @@ impl Coordinate for Rational {
 
 #[cfg(test)]
 mod tests {
+    use microfacet_lanes::f32x4;
+
     use super::*;
 
     #[test]

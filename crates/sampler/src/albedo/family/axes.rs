@@ -7,10 +7,10 @@
 use alloc::vec::Vec;
 
 use microfacet_core::math::{sqrt, sqrt64, within};
-use wide::f32x4;
+use microfacet_lanes::{Lanes, f32x4};
 
 use super::octaves::{inverse, octaves};
-use super::spline::{THREE, cubic_weights, quadratic_weights};
+use super::spline::{FOUR, THREE, cubic_weights, cubic_weights_in_lanes, quadratic_weights};
 
 /// The axes that a material has a place on, as lanes: of shapes and of roughnesses.
 pub(super) const SHAPE: usize = 0;
@@ -171,6 +171,17 @@ impl View {
     #[inline(always)]
     pub(super) fn weights(self, cos: f32) -> (usize, f32x4) {
         cubic_weights(self.coordinate(cos))
+    }
+
+    /// [`weights`](Self::weights) in lanes, by coefficient.
+    #[inline(always)]
+    pub(super) fn weights_in_lanes<L: Lanes>(self, cos: L) -> (L::Ints, [L; FOUR]) {
+        let sin = (L::splat(1.0) - cos * cos).sqrt();
+        // As `coordinate`.
+        let part = cos * self.shape;
+        let x = (part / (part + sin * self.knee)).sqrt().sqrt();
+        let h = (cos / (sin + 1.0)).sqrt().sqrt();
+        cubic_weights_in_lanes(x * Self::SHARES[0] + h * Self::SHARES[1])
     }
 
     /// In cells.

@@ -15,17 +15,20 @@ use alloc::vec::Vec;
 
 use microfacet_core::Masking;
 use microfacet_core::math::unit;
-use wide::f32x4;
+use microfacet_lanes::{Ints, Lanes, Work, f32x4, widest};
 
 use self::axes::{Axes, Place, SHAPE, SIGMA, View};
 use self::spline::{FOUR, THREE};
 use super::moments::Moments;
 use crate::elementary::exp2;
+use crate::error::{BatchError, same_lengths};
 use crate::vector::vec3;
 
 /// Coefficients along the view, and along the shape.
 const VIEWS: usize = View::CELLS + 3;
 const SHAPES: usize = Axes::SHAPES + 3;
+/// Coefficients along the view at one shape and roughness, and one that is read with weight 0.
+type Row = [f32; VIEWS + 1];
 /// What a lookup reads of one channel: from the first of four coefficients of the first of three
 /// shapes of the first of three roughnesses to the last of the last.
 const PART: usize = 2 * SHAPES * VIEWS + 2 * VIEWS + FOUR;
@@ -92,6 +95,30 @@ impl FamilyAlbedo {
         AlbedoAt { family: self, place, sigma, view: View::new(sigma, d), mirror: false }
     }
 
+    /// E with F = 1 of each hit, of σ, γ and a view, into `e`: that of [`at`](Self::at), one by one,
+    /// since each combines coefficients of its own.
+    ///
+    /// # Errors
+    /// [`BatchError`] if the slices are not of one length; `e` is then untouched.
+    pub fn albedo_batch<V: Copy + Into<[f32; 3]>>(
+        &self,
+        sigma: &[f32],
+        gamma: &[f32],
+        v: &[V],
+        e: &mut [f32],
+    ) -> Result<(), BatchError> {
+        same_lengths(&[
+            ("sigma", sigma.len()),
+            ("gamma", gamma.len()),
+            ("v", v.len()),
+            ("e", e.len()),
+        ])?;
+        for (((sigma, gamma), v), e) in sigma.iter().zip(gamma).zip(v).zip(e) {
+            *e = self.at(*sigma, *gamma).albedo(*v);
+        }
+        Ok(())
+    }
+
     /// The form of masking.
     #[must_use]
     pub fn masking(&self) -> Masking {
@@ -133,6 +160,71 @@ impl AlbedoAt<'_> {
     #[must_use]
     pub fn albedo(&self, v: impl Into<[f32; 3]>) -> f32 {
         1.0 - self.lost(v)
+    }
+
+    /// [`albedo`](Self::albedo) for each view, into `e`: the same numbers.
+    ///
+    /// # Errors
+    /// [`BatchError`] if the slices are not of one length; `e` is then untouched.
+    pub fn albedo_batch<V: Copy + Into<[f32; 3]>>(
+        &self,
+        v: &[V],
+        e: &mut [f32],
+    ) -> Result<(), BatchError> {
+        same_lengths(&[("v", v.len()), ("e", e.len())])?;
+        let row = self.row();
+        let done = widest(Batch { albedo: *self, row: &row, v, e });
+        let (v, e) = (&v[done..], &mut e[done..]);
+        // What does not fill more lanes may fill four.
+        let done = self.albedo_groups::<f32x4, V>(&row, v, e);
+        for (v, e) in v[done..].iter().zip(&mut e[done..]) {
+            *e = self.albedo(*v);
+        }
+        Ok(())
+    }
+
+    /// E of all views but those too few to fill lanes; how many they are.
+    #[inline(always)]
+    fn albedo_groups<L: Lanes, V: Copy + Into<[f32; 3]>>(
+        &self,
+        row: &Row,
+        v: &[V],
+        e: &mut [f32],
+    ) -> usize {
+        let one = L::splat(1.0);
+        for (v, e) in v.chunks_exact(L::WIDTH).zip(e.chunks_exact_mut(L::WIDTH)) {
+            let cos = L::from_fn(|i| unit(vec3(v[i]).z));
+            let (cells, [a, b, c, d]) = self.view.weights_in_lanes(cos);
+            let cells = cells.to_array();
+            let four = |i: usize| -> f32x4 {
+                let four = row[cells[i] as usize..].first_chunk::<FOUR>();
+                f32x4::from(*four.expect("in the row"))
+            };
+            let [w, x, y, z] = L::columns(four);
+            let root = (w * a + y * c) + (x * b + z * d);
+            let lost = root * root;
+            let lost = lost.simd_lt(one).select(lost, one);
+            e.copy_from_slice((one - lost).to_array().as_ref());
+        }
+        v.len() - v.len() % L::WIDTH
+    }
+
+    /// The coefficients of √(1 − E) along the view, as [`channel`](Self::channel) combines them.
+    fn row(&self) -> Row {
+        let mut row = [0.0; VIEWS + 1];
+        if self.mirror {
+            return row;
+        }
+        let [shape, sigma] = self.place.first;
+        let from = &self.family.values[0][(sigma * SHAPES + shape) * VIEWS..];
+        let [a, b, c] = self.weights_along(SHAPE);
+        let [d, e, f] = self.weights_along(SIGMA);
+        for (view, row) in row.iter_mut().enumerate() {
+            let at = |i: usize, j: usize| from[(i * SHAPES + j) * VIEWS + view];
+            let of = |i: usize| at(i, 0) * a + at(i, 1) * b + at(i, 2) * c;
+            *row = of(0) * d + of(1) * e + of(2) * f;
+        }
+        row
     }
 
     /// The share of light lost, 1 − E(v).
@@ -242,6 +334,23 @@ impl AlbedoAt<'_> {
         }
         let [log, bias, f82, _] = sum.to_array();
         [0.0 - unit(exp2(sum).to_array()[0]), bias, f82].map(|x| if log < LEAST { 0.0 } else { x })
+    }
+}
+
+/// [`AlbedoAt::albedo_groups`].
+struct Batch<'a, V> {
+    albedo: AlbedoAt<'a>,
+    row: &'a Row,
+    v: &'a [V],
+    e: &'a mut [f32],
+}
+
+impl<V: Copy + Into<[f32; 3]>> Work for Batch<'_, V> {
+    type Output = usize;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> usize {
+        self.albedo.albedo_groups::<L, V>(self.row, self.v, self.e)
     }
 }
 

@@ -5,7 +5,7 @@
 
 use alloc::vec::Vec;
 
-use wide::{bytemuck, f32x4, i32x4};
+use microfacet_lanes::{Ints, Lanes, f32x4};
 
 use super::axes::Place;
 
@@ -16,12 +16,11 @@ pub(super) const FOUR: usize = 4;
 
 /// The nearest whole numbers to small x ≥ −½, and how far the x are above them.
 #[inline(always)]
-fn nearest(x: f32x4) -> (i32x4, f32x4) {
+fn nearest<L: Lanes>(x: L) -> (L::Ints, L) {
     // A sum with this is rounded to a whole number, which stands in its last bits.
     const SHIFT: f32 = 12_582_912.0;
     let shifted = x + SHIFT;
-    let bits: i32x4 = bytemuck::cast(shifted);
-    (bits & i32x4::splat(0xffff), x - (shifted - SHIFT))
+    (shifted.to_bits() & L::Ints::splat(0xffff), x - (shifted - SHIFT))
 }
 
 /// The first of the three coefficients at x ∈ [0, nodes − 1], and their weights; along two axes.
@@ -36,17 +35,31 @@ pub(super) fn quadratic_weights(x: f32x4) -> Place {
     Place { first: [a as usize, b as usize], weights }
 }
 
+/// Powers of the distance d = x − ½ from the middle of a cell: (½−d)³/6, …, (½+d)³/6.
+const POWERS: [[f32; FOUR]; FOUR] = [
+    [1.0 / 48.0, 23.0 / 48.0, 23.0 / 48.0, 1.0 / 48.0],
+    [-0.125, -0.625, 0.625, 0.125],
+    [0.25, -0.25, -0.25, 0.25],
+    [-1.0 / 6.0, 0.5, -0.5, 1.0 / 6.0],
+];
+
+/// [`cubic_weights`] in lanes, by coefficient.
+#[inline(always)]
+pub(super) fn cubic_weights_in_lanes<L: Lanes>(x: L) -> (L::Ints, [L; FOUR]) {
+    let (cell, x) = nearest(x - 0.5);
+    (cell, [weight(0, x), weight(1, x), weight(2, x), weight(3, x)])
+}
+
+#[inline(always)]
+fn weight<L: Lanes>(i: usize, x: L) -> L {
+    let [a, b, c, d] = POWERS.map(|power| power[i]);
+    x * (x * (x * d + c) + b) + a
+}
+
 /// The cell of x ∈ [0, cells], which is also the first of its four coefficients, and their weights.
 /// x = cells may also count to a cell beyond, with 0 for the weight of its last coefficient.
 #[inline(always)]
 pub(super) fn cubic_weights(x: f32) -> (usize, f32x4) {
-    // Powers of the distance d = x − ½ from the middle of the cell: (½−d)³/6, …, (½+d)³/6.
-    const POWERS: [[f32; FOUR]; FOUR] = [
-        [1.0 / 48.0, 23.0 / 48.0, 23.0 / 48.0, 1.0 / 48.0],
-        [-0.125, -0.625, 0.625, 0.125],
-        [0.25, -0.25, -0.25, 0.25],
-        [-1.0 / 6.0, 0.5, -0.5, 1.0 / 6.0],
-    ];
     let (cell, x) = nearest(f32x4::splat(x - 0.5));
     let [a, b, c, d] = POWERS.map(f32x4::from);
     (cell.to_array()[0] as usize, a + x * (b + x * (c + x * d)))

@@ -1,15 +1,15 @@
-//! G1 of a lobe, of one view, of a view and a light, and of four views. G1 is q times the cubic of
+//! G1 of a lobe, of one view, of a view and a light, and of many views. G1 is q times the cubic of
 //! the cell of its coordinate: a root, a division and a lookup.
 
 use glam::Vec3;
-use wide::f32x4;
+use microfacet_lanes::{Lanes, Work, f32x4, widest};
 
 use microfacet_tables::axis::above_zero;
 use microfacet_tables::axis::hermite::split;
 
-use super::four::transpose;
+use super::many::components;
 use super::{swap_halves, swap_pairs};
-use crate::material::surface::{LANES, Shape, Surface};
+use crate::material::surface::{Shape, Shapes, Surface};
 use crate::vector::vec3;
 
 /// Returns 0, the G1 of NaN; cold, so that the common path stays short.
@@ -78,28 +78,59 @@ impl<S: Shape> Surface<S> {
 
     /// G1 of each view; the slices are of the same length.
     pub(crate) fn g1_all<V: Copy + Into<[f32; 3]>>(self, v: &[V], g1: &mut [f32]) {
-        let (v, v_rest) = v.as_chunks::<LANES>();
-        let (g1, g1_rest) = g1.as_chunks_mut::<LANES>();
-        for (v, g1) in v.iter().zip(g1) {
-            *g1 = self.g1_lanes(v);
-        }
-        for (v, g1) in v_rest.iter().zip(g1_rest) {
+        let (mut v, mut g1) = (v, g1);
+        let done = widest(Masked { surface: self, v, g1: &mut *g1 });
+        (v, g1) = (&v[done..], &mut g1[done..]);
+        let done = self.g1_groups::<f32x4, V>(v, g1);
+        for (v, g1) in v[done..].iter().zip(&mut g1[done..]) {
             *g1 = self.g1_of_one(vec3(*v));
         }
     }
 
+    /// G1 of all views but those too few to fill lanes; how many they are.
     #[inline(always)]
-    fn g1_lanes<V: Copy + Into<[f32; 3]>>(self, w: &[V; LANES]) -> [f32; LANES] {
-        let (view, cells) = self.shape.masking_view();
-        let [wx, wy, wz] = transpose(w);
+    fn g1_groups<L: Lanes, V: Copy + Into<[f32; 3]>>(self, v: &[V], g1: &mut [f32]) -> usize {
         let [kx, ky] = self.scales.kappa;
-        let (x, y) = (wx * kx, wy * ky);
-        let z = above_zero(wz);
-        let across = (x * x + y * y).sqrt();
-        let [q, at] = view.of_views(across, z, cells);
-        let (cell, w) = split(at);
-        let g1 = q * self.shape.masking_lanes(cell.to_array(), w);
-        // NaN gives 0 here, too.
-        (g1.fast_min(f32x4::ONE) & g1.simd_ge(0.0)).to_array()
+        let kappa = [L::splat(kx), L::splat(ky)];
+        for (v, g1) in v.chunks_exact(L::WIDTH).zip(g1.chunks_exact_mut(L::WIDTH)) {
+            let lanes = g1_lanes::<L, S, V>(self.shape, kappa, v);
+            g1.copy_from_slice(lanes.to_array().as_ref());
+        }
+        v.len() - v.len() % L::WIDTH
+    }
+}
+
+/// G1 of each lane's view and shape, whose κσx and κσy are given.
+#[inline(always)]
+fn g1_lanes<L: Lanes, S: Shapes, V: Copy + Into<[f32; 3]>>(
+    shapes: S,
+    [kx, ky]: [L; 2],
+    w: &[V],
+) -> L {
+    let (view, cells) = shapes.masking_view();
+    let [wx, wy, wz] = components::<L, V>(w);
+    let (x, y) = (wx * kx, wy * ky);
+    let z = above_zero(wz);
+    let across = (x * x + y * y).sqrt();
+    let [q, at] = view.of_views(across, z, cells);
+    let (cell, w) = split(at);
+    let g1 = q * shapes.masking_lanes(cell, w);
+    // NaN gives 0 here, too.
+    g1.fast_min(L::splat(1.0)) & g1.simd_ge(L::splat(0.0))
+}
+
+/// [`Surface::g1_groups`].
+struct Masked<'a, S, V> {
+    surface: Surface<S>,
+    v: &'a [V],
+    g1: &'a mut [f32],
+}
+
+impl<S: Shape, V: Copy + Into<[f32; 3]>> Work for Masked<'_, S, V> {
+    type Output = usize;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> usize {
+        self.surface.g1_groups::<L, V>(self.v, self.g1)
     }
 }

@@ -1,11 +1,11 @@
 //! The lookups of a [`StudentT`](super::StudentT) in the lanes of SIMD vectors: [`masking`], a
-//! normal of [`one`] view with its components in lanes, and of [`four`] views, a lane for each.
+//! normal of [`one`] view with its components in lanes, and of [`many`] views, a lane for each.
 //! [`views`] stretches views and locates them in the table.
 //!
 //! They compute the same as the readable code in [`student_t`](super::student_t); the tests of
 //! values and distributions run these.
 
-pub(crate) mod four;
+pub(crate) mod many;
 mod masking;
 pub(crate) mod one;
 pub(crate) mod views;

@@ -18,18 +18,19 @@
 //! - The cubic along u₁ as a weighted sum, a chain half as long as Horner's: 3 %.
 
 use glam::Vec3;
+use microfacet_lanes::Lanes;
 use wide::{bytemuck, f32x4, i32x4};
 
 use microfacet_tables::axis::half_tangent::half_slope_at;
 use microfacet_tables::axis::hermite::{Node, basis, split};
 use microfacet_tables::axis::roots;
 
-use super::four::sample_general;
+use super::many::sample_general;
 use super::views::View;
 use super::{first_three, pairs, pairs_of_firsts, sum, swap_pairs};
-use crate::material::heavy::Part;
+use crate::material::heavy::{Part, half_slopes};
 use crate::material::horizon::HORIZON;
-use crate::material::surface::{LANES, Shape, Surface};
+use crate::material::surface::{Shape, Surface};
 
 impl<S: Shape> Surface<S> {
     /// A visible normal, by the fast path where it serves and by the general path elsewhere.
@@ -112,7 +113,7 @@ pub(crate) struct Reads {
     pub(crate) across: usize,
     /// The coordinates along the plane and across it in cells, and in their cells.
     pub(crate) t: f32x4,
-    pub(crate) w: [f32; LANES],
+    pub(crate) w: [f32; 4],
     /// All ones where a number is above ½.
     pub(crate) towards: f32x4,
     /// The number within the heavy part, where that is drawn from.
@@ -181,7 +182,7 @@ fn draw_along<S: Shape, const HEAVY: bool>(
     // Half of x, and z, of the in-plane slope, and whether the normal is visible.
     let mut shrink = f32x4::ONE;
     let (x, z, clear) = if HEAVY && let Some(number) = tail {
-        let [x, z, factor] = shape.tail().half_slopes(f32x4::splat(number));
+        let [x, z, factor] = half_slopes(f32x4::splat(number), shape.tails());
         shrink = pairs_of_firsts(f32x4::ONE, factor);
         // A heavy slope is on the viewer's side: the test only excludes that x and z are both
         // small.
@@ -213,7 +214,7 @@ const SILHOUETTE_MARGIN_ACROSS: f32 = 4e-6;
 
 /// The least g t_z of a normal clear of the silhouette, for the slope across 2t : t_z.
 #[inline(always)]
-pub(crate) fn least_clear(silhouette: f32x4, t: f32x4, t_z: f32x4) -> f32x4 {
+pub(crate) fn least_clear<L: Lanes>(silhouette: L, t: L, t_z: L) -> L {
     (silhouette + SILHOUETTE_MARGIN) * t_z - t * SILHOUETTE_MARGIN_ACROSS
 }
 

@@ -1,8 +1,8 @@
 //! Views in the lanes of SIMD vectors, stretched and located in the table: one for the
-//! [fast path](super::one), four for [batches](super::four).
+//! [fast path](super::one), many for [batches](super::many).
 
 use glam::Vec3;
-use wide::f32x4;
+use microfacet_lanes::{Lanes, f32x4};
 
 use super::swap_pairs;
 use crate::material::surface::{LONG, LONGEST, NORMAL_INCIDENCE, SHORT, Shape, Surface};
@@ -57,53 +57,56 @@ impl View {
             xy = f32x4::new([x, y, 0.0, 0.0]);
             [frame, rho, z, length] = others.map(f32x4::splat);
         }
-        let [at, silhouette] = shape.place::<HEAVY>(rho, z, length);
+        let [at, silhouette] = shape.place::<HEAVY, _>(rho, z, length);
         Self { xy, frame, rho, z, at, silhouette }
     }
 }
 
-/// Four views as [`Stretched`](crate::material::surface::Stretched) is one, and √(ρ² + z²).
+/// Views as [`Stretched`](crate::material::surface::Stretched) is one, and √(ρ² + z²).
 #[derive(Clone, Copy, Default)]
-pub(crate) struct Views {
-    pub(crate) x: f32x4,
-    pub(crate) y: f32x4,
-    pub(crate) frame: f32x4,
-    pub(crate) rho: f32x4,
-    pub(crate) z: f32x4,
-    pub(crate) length: f32x4,
+pub(crate) struct Views<L> {
+    pub(crate) x: L,
+    pub(crate) y: L,
+    pub(crate) frame: L,
+    pub(crate) rho: L,
+    pub(crate) z: L,
+    pub(crate) length: L,
 }
 
-impl Views {
+impl<L: Lanes> Views<L> {
     #[inline(always)]
-    pub(crate) fn new(x: f32x4, y: f32x4, z: f32x4) -> Self {
-        let z = z & z.simd_gt(0.0);
+    pub(crate) fn new(x: L, y: L, z: L) -> Self {
+        let z = z & z.simd_gt(L::splat(0.0));
         let rho2 = x * x + y * y;
         let length2 = rho2 + z * z;
         let rho = rho2.sqrt();
         let views = Self { x, y, frame: rho, rho, z, length: length2.sqrt() };
-        let common = rho.simd_ge(SHORT) & length2.simd_le(LONG * LONG);
+        let common = rho.simd_ge(L::splat(SHORT)) & length2.simd_le(L::splat(LONG * LONG));
         if common.all() { views } else { views.of_any_length() }
     }
 
     /// With a frame whose squares stay in range where the horizontal component is short or long.
+    #[inline(always)]
     fn of_any_length(self) -> Self {
         let Self { x, y, rho, .. } = self;
-        let z = self.z.fast_min(f32x4::splat(LONGEST));
-        let sunk = rho.simd_gt(LONG).select(f32x4::splat(1.0 / LIFT), f32x4::ONE);
-        let lift = rho.simd_ge(SHORT).select(sunk, f32x4::splat(LIFT));
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let z = self.z.fast_min(L::splat(LONGEST));
+        let sunk = rho.simd_gt(L::splat(LONG)).select(L::splat(1.0 / LIFT), one);
+        let lift = rho.simd_ge(L::splat(SHORT)).select(sunk, L::splat(LIFT));
         // Normal incidence, straight down, NaN or too long: without z > 0 the view is moved to the
         // horizon, as every view below it, with an arbitrary azimuth.
-        let tilted = rho.simd_ge(NORMAL_INCIDENCE) & rho.simd_le(LONGEST);
-        let above = z.simd_gt(0.0);
-        let rho = tilted.select(rho, above.select(f32x4::ZERO, f32x4::ONE));
-        let z = tilted.select(z, above & z.fast_max(f32x4::splat(NORMAL_INCIDENCE)));
+        let least = L::splat(NORMAL_INCIDENCE);
+        let tilted = rho.simd_ge(least) & rho.simd_le(L::splat(LONGEST));
+        let above = z.simd_gt(zero);
+        let rho = tilted.select(rho, above.select(zero, one));
+        let z = tilted.select(z, above & z.fast_max(least));
         // The other views keep every bit.
-        let common = tilted & self.length.simd_le(f32::MAX);
+        let common = tilted & self.length.simd_le(L::splat(f32::MAX));
         let length = common.select(self.length, (rho * rho + z * z).sqrt());
         Self {
-            x: tilted.select(x * lift, f32x4::ONE),
-            y: tilted.select(y * lift, f32x4::ZERO),
-            frame: tilted.select(rho * lift, f32x4::ONE),
+            x: tilted.select(x * lift, one),
+            y: tilted.select(y * lift, zero),
+            frame: tilted.select(rho * lift, one),
             rho,
             z,
             length,
