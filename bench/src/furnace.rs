@@ -9,8 +9,8 @@
 use std::hint::black_box;
 
 use glam::Vec3;
-use microfacet_sampler::lobe::Reflecting;
-use microfacet_sampler::{Masking, StudentT, Tables};
+use microfacet_sampler::lobe::{PseudoVisible, Reflecting};
+use microfacet_sampler::{Masking, MicrofacetDistribution, StudentT, Tables};
 use serde::Serialize;
 
 use crate::clock::{self, Calls};
@@ -66,7 +66,7 @@ impl<'a> Choice<'a> {
 
 /// Every way to sample a material.
 fn choices<'a>(sigma: f64, lobe: &StudentT, points: &Points) -> Vec<Choice<'a>> {
-    let (visible, bounded) = (lobe.clone(), lobe.clone().bounded());
+    let (visible, bounded, pseudo) = (lobe.clone(), lobe.clone().bounded(), lobe.clone());
     let best = best_sigma(sigma, |drawn| points.noise(&ggx(drawn, lobe)).mean);
     vec![
         Choice::new("visible normals", true, sigma, move |v, u| {
@@ -74,6 +74,13 @@ fn choices<'a>(sigma: f64, lobe: &StudentT, points: &Points) -> Vec<Choice<'a>> 
         }),
         Choice::new("visible normals, bounded", true, sigma, move |v, u| {
             Some(bounded.sample_reflected(v, u, MASKING)?.1)
+        }),
+        Choice::new("pseudo-visible normals", true, sigma, move |v, u| {
+            let m = Vec3::from(pseudo.sample_pseudo_visible_normal(v, u));
+            let facing = v.dot(m);
+            let l = 2.0 * facing * m - v;
+            let weight = || pseudo.g2(v, l, MASKING) * (facing / (2.0 * v.z * m.z)).max(1.0);
+            (l.z > 0.0).then(weight)
         }),
         ggx(best, lobe),
     ]
