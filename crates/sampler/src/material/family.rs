@@ -108,7 +108,7 @@ impl Family {
     }
 
     /// A visible normal for each hit: of σx and σy, γ, a view and a pair of numbers, into `m`:
-    /// those of [`at`](Self::at), to 2 ulp, in lanes, which take half of the time.
+    /// those of [`at`](Self::at), to 2 ulp, in lanes.
     ///
     /// # Errors
     /// [`BatchError`] if the slices are not of one length; `m` is then untouched.

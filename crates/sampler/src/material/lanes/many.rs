@@ -53,11 +53,13 @@ impl<S: Shape> Surface<S> {
         let whole = v.len() - v.len() % L::WIDTH;
         let block = GROUPS * L::WIDTH;
         let blocks = v[..whole].chunks(block).zip(u[..whole].chunks(block));
+        // Set to zero once, not for each block.
+        let mut stages = Default::default();
         for ((v, u), m) in blocks.zip(m[..whole].chunks_mut(block)) {
             if self.shape.peeled() {
-                self.sample_block::<true, L, V, M>(v, u, m);
+                self.sample_block::<true, L, V, M>(&mut stages, v, u, m);
             } else {
-                self.sample_block::<false, L, V, M>(v, u, m);
+                self.sample_block::<false, L, V, M>(&mut stages, v, u, m);
             }
         }
         whole
@@ -67,20 +69,19 @@ impl<S: Shape> Surface<S> {
     #[inline(always)]
     fn sample_block<const HEAVY: bool, L: Lanes, V: Copy + Into<[f32; 3]>, M: From<[f32; 3]>>(
         self,
+        (located, slopes): &mut ([Located<L>; GROUPS], [Slopes<L>; GROUPS]),
         v: &[V],
         u: &[[f32; 2]],
         m: &mut [M],
     ) {
         let (shape, [sx, sy]) = (self.shape, self.scales.sigma);
         let sigma = [L::splat(sx), L::splat(sy)];
-        let mut located = [Located::<L>::default(); GROUPS];
         let views = v.chunks_exact(L::WIDTH);
         for ((at, v), u) in located.iter_mut().zip(views.clone()).zip(u.chunks_exact(L::WIDTH)) {
             let [x, y, z] = components(v);
             let u = [L::from_fn(|i| u[i][0]), L::from_fn(|i| u[i][1])];
             *at = Located::new::<HEAVY, S>(shape, Views::new(x * sigma[0], y * sigma[1], z), u);
         }
-        let mut slopes = [Slopes::<L>::default(); GROUPS];
         for (slopes, at) in slopes.iter_mut().zip(&located[..views.len()]) {
             *slopes = at.look_up::<HEAVY, S>(shape);
         }
