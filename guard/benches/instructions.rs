@@ -38,7 +38,7 @@ fn sum(normals: impl Iterator<Item = [f32; 3]>) -> Vec3 {
 // from its closed form, and D of `power_law` ones is not read from a table.
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(190.6))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(191.6))]
 #[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(268.8))]
 fn sample_visible_normal(inputs: Inputs<StudentT>) -> (Vec3, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.u);
@@ -46,8 +46,8 @@ fn sample_visible_normal(inputs: Inputs<StudentT>) -> (Vec3, Inputs<StudentT>) {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(178.9))]
-#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(222.2))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(85.5))]
+#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(108.6))]
 fn sample_batch(mut inputs: Inputs<StudentT>) -> Inputs<StudentT> {
     inputs.lobe.sample_batch(&inputs.v, &inputs.u, &mut inputs.m).expect("equal lengths");
     black_box(inputs)
@@ -70,8 +70,8 @@ fn sample_with_roughness(inputs: Inputs<StudentT>) -> (Vec3, Inputs<StudentT>) {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = microfacet_guard::family, config = at_most(437.1))]
-#[bench::heavy(args = (1.6), setup = microfacet_guard::family, config = at_most(528.9))]
+#[bench::common(args = (2.5), setup = microfacet_guard::family, config = at_most(409.3))]
+#[bench::heavy(args = (1.6), setup = microfacet_guard::family, config = at_most(511.6))]
 fn sample_of_family((family, gamma, inputs): Hits) -> (Vec3, Hits) {
     let calls = inputs.v.iter().zip(&inputs.u);
     let one = |(v, u): (&Vec3, &[f32; 2])| {
@@ -81,7 +81,7 @@ fn sample_of_family((family, gamma, inputs): Hits) -> (Vec3, Hits) {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = microfacet_guard::family, config = at_most(158.2))]
+#[bench::common(args = (2.5), setup = microfacet_guard::family, config = at_most(156.2))]
 fn g1_of_family((family, gamma, inputs): Hits) -> (f32, Hits) {
     let calls = inputs.v.iter().zip(&inputs.u);
     let one =
@@ -97,14 +97,14 @@ fn g1(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(23.6))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(15.9))]
 fn g1_batch(mut inputs: Inputs<StudentT>) -> Inputs<StudentT> {
     inputs.lobe.g1_batch(&inputs.v, &mut inputs.g1).expect("equal lengths");
     black_box(inputs)
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(79.1))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(62.1))]
 #[bench::power_law(args = (40.0), setup = Inputs::new, config = at_most(84.1))]
 fn d(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
     (black_box(inputs.m.iter().map(|m| black_box(inputs.lobe.d(*m))).sum()), inputs)
@@ -118,22 +118,22 @@ fn visible_normal_pdf(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(959.3))]
-#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(1130.3))]
+#[bench::common(args = (2.5), setup = Inputs::new, config = at_most(1000.3))]
+#[bench::heavy(args = (1.6), setup = Inputs::new, config = at_most(1169.6))]
 fn table_pdf(inputs: Inputs<StudentT>) -> (f32, Inputs<StudentT>) {
     let calls = inputs.v.iter().zip(&inputs.m);
     (black_box(calls.map(|(v, m)| black_box(inputs.lobe.table_pdf(*v, *m))).sum()), inputs)
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::bounded, config = at_most(325.6))]
+#[bench::common(args = (2.5), setup = Inputs::bounded, config = at_most(330.6))]
 fn bounded(inputs: Inputs<Bounded>) -> (Vec3, Inputs<Bounded>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (sum(calls.map(|(v, u)| inputs.lobe.at(*v).sample(*u))), inputs)
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = Inputs::bounded, config = at_most(305.2))]
+#[bench::common(args = (2.5), setup = Inputs::bounded, config = at_most(267.1))]
 fn bounded_batch(mut inputs: Inputs<Bounded>) -> Inputs<Bounded> {
     let Inputs { lobe, v, u, m, g1 } = &mut inputs;
     lobe.sample_reflecting_batch(v, u, m, g1).expect("equal lengths");
@@ -144,13 +144,13 @@ fn bounded_batch(mut inputs: Inputs<Bounded>) -> Inputs<Bounded> {
 // count, or 2 % fewer.
 
 #[library_benchmark]
-#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(195.1))]
+#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(185.1))]
 fn ellipsoid_g1(inputs: Inputs<Ellipsoid>) -> (f32, Inputs<Ellipsoid>) {
     (black_box(inputs.v.iter().map(|v| black_box(inputs.lobe.g1(*v))).sum()), inputs)
 }
 
 #[library_benchmark]
-#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(727.6))]
+#[bench::below_the_lobe(args = (2.5), setup = Inputs::below, config = at_most(720.0))]
 fn ellipsoid_sample_visible_normal(inputs: Inputs<Ellipsoid>) -> (Vec3, Inputs<Ellipsoid>) {
     let calls = inputs.v.iter().zip(&inputs.u);
     (sum(calls.map(|(v, u)| inputs.lobe.sample_visible_normal(*v, *u))), inputs)
@@ -180,8 +180,8 @@ fn ggx_sample_visible_normal(inputs: Inputs<Ggx>) -> (Vec3, Inputs<Ggx>) {
 type Conductors = (Conductor<StudentT>, Inputs<StudentT>);
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(351.8))]
-#[bench::heavy(args = (1.6), setup = microfacet_guard::conductor, config = at_most(398.5))]
+#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(357.5))]
+#[bench::heavy(args = (1.6), setup = microfacet_guard::conductor, config = at_most(401.4))]
 fn conductor_sample((conductor, inputs): Conductors) -> (f32, Conductors) {
     let calls = inputs.v.iter().zip(&inputs.u);
     let one = |(v, u): (&Vec3, &[f32; 2])| {
@@ -192,8 +192,8 @@ fn conductor_sample((conductor, inputs): Conductors) -> (f32, Conductors) {
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(407.5))]
-#[bench::heavy(args = (1.6), setup = microfacet_guard::conductor, config = at_most(434.2))]
+#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(402.0))]
+#[bench::heavy(args = (1.6), setup = microfacet_guard::conductor, config = at_most(430.7))]
 fn conductor_sample_with_pdf((conductor, inputs): Conductors) -> (f32, Conductors) {
     let calls = inputs.v.iter().zip(&inputs.u);
     let one = |(v, u): (&Vec3, &[f32; 2])| {
@@ -204,7 +204,7 @@ fn conductor_sample_with_pdf((conductor, inputs): Conductors) -> (f32, Conductor
 }
 
 #[library_benchmark]
-#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(219.1))]
+#[bench::common(args = (2.5), setup = microfacet_guard::conductor, config = at_most(220.1))]
 fn conductor_eval_pdf((conductor, inputs): Conductors) -> (f32, Conductors) {
     let calls = inputs.v.iter().zip(inputs.v.iter().rev());
     let one = |(v, l): (&Vec3, &Vec3)| black_box(conductor.eval_pdf(*v, *l, Transport::Radiance)).1;

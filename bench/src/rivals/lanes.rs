@@ -1,5 +1,5 @@
 //! GGX in the lanes of SIMD vectors, over whole slices: normals by spherical caps, and G1. The
-//! formulas are those of [`ggx`](super::ggx).
+//! formulas are those of [`ggx`](mod@ggx).
 //!
 //! Written as for a renderer that has its choice of instructions: a few shuffles turn an array of
 //! vectors into components and back, the sine is a polynomial, nothing branches, and a product is
