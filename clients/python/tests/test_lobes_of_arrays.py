@@ -89,7 +89,9 @@ def test_all_arguments_broadcast():
     assert m.shape == (3, 5, 7, 3)
     for i, j in np.ndindex(5, 7):
         one = microfacet.StudentT(np.array([sigma[i, 0]]), gamma[j])
-        assert np.array_equal(one.sample_visible_normal(v[j], u[:, 0, 0]), m[:, i, j])
+        # Too few to fill the lanes of a processor are drawn one by one, to the last bits.
+        off = np.abs(one.sample_visible_normal(v[j], u[:, 0, 0]) - m[:, i, j])
+        assert off.max() <= 2 * np.finfo(np.float32).eps
     with pytest.raises(ValueError, match=r"sigma \(2,\), gamma \(3,\)"):
         microfacet.StudentT(np.ones(2), np.array([2, 3, 4]))
     with pytest.raises(ValueError, match="broadcast"):
