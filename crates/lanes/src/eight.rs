@@ -13,7 +13,7 @@ use core::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Not, Sub};
 use wide::f32x4;
 
 use crate::sealed::Sealed;
-use crate::{Ints, Lanes, Work};
+use crate::{Ints, Lanes, MOST, Work};
 
 /// Whether the processor has AVX2.
 #[inline(always)]
@@ -136,7 +136,7 @@ impl F32x8 {
 }
 
 impl Lanes for F32x8 {
-    const WIDTH: usize = 8;
+    const WIDTH: usize = MOST;
 
     type Ints = I32x8;
     type Array = [f32; 8];

@@ -42,6 +42,9 @@ use core::ops::{Add, BitAnd, BitOr, BitXor, Div, Index, Mul, Not, Sub};
 
 pub use wide::{f32x4, i32x4};
 
+/// The most lanes that there are.
+pub const MOST: usize = 8;
+
 /// Work on `f32` in lanes.
 pub trait Work {
     /// What it returns.

@@ -415,7 +415,7 @@ fn weights_stay_bounded_for_smooth_surfaces() {
 fn batches_of_albedos_are_single_calls() {
     let (tables, masking) = (Tables::embedded(), Masking::HeightCorrelated);
     let family = tables.family_albedo(masking).unwrap();
-    for count in [0, 1, 3, 5, 8, 13, 200] {
+    for count in [0, 1, 3, 5, 8, 13, 29, 200] {
         let z = |i: usize| match i % 11 {
             0 => [1.0, 0.0, -0.0, f32::NAN, -0.5, 1e-5, 1.5][i / 11 % 7],
             part => part as f32 / 11.0 + i as f32 * 4e-4,

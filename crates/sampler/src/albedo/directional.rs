@@ -5,10 +5,11 @@ use microfacet_core::Masking;
 use microfacet_core::math::unit;
 use microfacet_tables::{Reflectance, Table};
 
+use super::batch::of_each;
 use super::curve::{Curve, MaterialPoint, Rows, missing};
 use super::elevation::Elevation;
 use super::moments::{Moments, averaged, down_to_grazing, less_mirror};
-use crate::error::{BatchError, MaterialError, same_lengths};
+use crate::error::{BatchError, MaterialError};
 use crate::vector::vec3;
 
 /// The directional albedo of one material as a function of the view, with F = 1 and as moments of
@@ -96,11 +97,7 @@ impl Albedo {
         v: &[V],
         e: &mut [f32],
     ) -> Result<(), BatchError> {
-        same_lengths(&[("v", v.len()), ("e", e.len())])?;
-        for (v, e) in v.iter().zip(e) {
-            *e = self.albedo(*v);
-        }
-        Ok(())
+        of_each(v, e, |v| self.albedo(v))
     }
 
     /// The share of light lost, 1 − E(v), with all its digits where E is close to 1.

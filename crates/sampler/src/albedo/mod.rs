@@ -10,6 +10,7 @@
 //! The averages of reflectances over the hemisphere are for a compensation of your own.
 
 mod average;
+mod batch;
 mod common;
 mod curve;
 mod directional;

@@ -11,10 +11,11 @@ use microfacet_tables::{Axis, Interpolation, Kind, Mapping, Table};
 use wide::f32x4;
 
 use super::average::over_views;
+use super::batch::of_each;
 use super::elevation::Elevation;
 use super::moments::{Moments, averaged, down_to_grazing, less_mirror};
 use crate::elementary::log2;
-use crate::error::{BatchError, same_lengths};
+use crate::error::BatchError;
 use crate::tables::Tables;
 use crate::vector::vec3;
 
@@ -215,11 +216,7 @@ impl ShapeAlbedoAt<'_> {
         v: &[V],
         e: &mut [f32],
     ) -> Result<(), BatchError> {
-        same_lengths(&[("v", v.len()), ("e", e.len())])?;
-        for (v, e) in v.iter().zip(e) {
-            *e = self.albedo(*v);
-        }
-        Ok(())
+        of_each(v, e, |v| self.albedo(v))
     }
 
     /// The share of light lost, 1 − E(v), with all its digits where E is close to 1.

@@ -24,7 +24,7 @@ use microfacet_lanes::{Ints, Lanes, Work, f32x4, widest};
 use microfacet_tables::axis::hermite::split;
 
 use super::batch::Batch;
-use super::delegate::{by_ref, forward};
+use super::delegate::{by_ref, forward, unbounded};
 use super::distribution::{Facet, MicrofacetDistribution};
 use super::key::LobeKey;
 use super::lanes::first_three;
@@ -325,13 +325,6 @@ impl<'a> BoundedRef<'a> {
         }
         Kept { from: low, share: high - low, end: L::splat(f32::INFINITY), gap: L::splat(0.0) }
     }
-}
-
-macro_rules! unbounded {
-    ($bounded:ident, $one:ident => $call:expr) => {{
-        let $one = $bounded.lobe;
-        $call
-    }};
 }
 
 forward!(#[inline(always)] Bounded, by_ref: MicrofacetDistribution, Reflecting, Tabulated, Batch);

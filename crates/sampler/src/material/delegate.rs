@@ -156,4 +156,12 @@ macro_rules! surface {
     }};
 }
 
-pub(super) use {by_ref, forward, surface};
+/// To the lobe whose normals a bounded one leaves out.
+macro_rules! unbounded {
+    ($bounded:ident, $one:ident => $call:expr) => {{
+        let $one = $bounded.lobe;
+        $call
+    }};
+}
+
+pub(super) use {by_ref, forward, surface, unbounded};

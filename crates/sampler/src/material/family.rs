@@ -11,12 +11,12 @@ use alloc::vec::Vec;
 
 use microfacet_core::Masking;
 use microfacet_core::Roughness;
-use microfacet_lanes::{Lanes, Work, f32x4, widest};
+use microfacet_lanes::{Lanes, MOST, Work, f32x4, widest};
 use microfacet_tables::Table;
 
 use super::batch::Batch;
 use super::coverage;
-use super::delegate::{forward, surface};
+use super::delegate::{forward, surface, unbounded};
 use super::distribution::{Facet, MicrofacetDistribution};
 use super::family_part::{AtShape, Part, PerLane};
 use super::key::{LobeKey, has_pole};
@@ -234,9 +234,6 @@ impl<'a, V: Copy + Into<[f32; 3]>> Hits<'a, V> {
     }
 }
 
-/// The most lanes that there are.
-const MOST: usize = 8;
-
 /// [`Hits::sample_groups`].
 struct Normals<'a, V, M> {
     hits: Hits<'a, V>,
@@ -283,6 +280,23 @@ impl<'a> FamilyLobe<'a> {
     }
 }
 
+forward!(#[inline(always)] FamilyLobe<'_>, surface: MicrofacetDistribution, Reflecting, PseudoVisible, Batch);
+
+impl Tabulated for FamilyLobe<'_> {
+    fn key(&self) -> LobeKey {
+        LobeKey::of_family(self.sigma(), self.gamma())
+    }
+
+    #[inline]
+    fn has_pole(&self) -> bool {
+        has_pole(self.gamma())
+    }
+
+    fn bytes(&self) -> usize {
+        self.surface.shape.bytes()
+    }
+}
+
 /// The lobe of a hit for reflection, which leaves out steep normals of a heavy tail: most of those
 /// that lose light below the horizon.
 ///
@@ -303,13 +317,6 @@ impl<'a> BoundedFamilyLobe<'a> {
     }
 }
 
-macro_rules! unbounded {
-    ($bounded:ident, $one:ident => $call:expr) => {{
-        let $one = $bounded.lobe;
-        $call
-    }};
-}
-
 // As the lobe, except for the normals that are drawn for reflection.
 forward!(#[inline(always)] BoundedFamilyLobe<'_>, unbounded: MicrofacetDistribution, Tabulated, Batch);
 
@@ -323,23 +330,6 @@ impl Reflecting for BoundedFamilyLobe<'_> {
     #[inline(always)]
     fn reflecting_share(&self, v: impl Into<[f32; 3]>) -> f32 {
         self.lobe.surface.upward_share(vec3(v))
-    }
-}
-
-forward!(#[inline(always)] FamilyLobe<'_>, surface: MicrofacetDistribution, Reflecting, PseudoVisible, Batch);
-
-impl Tabulated for FamilyLobe<'_> {
-    fn key(&self) -> LobeKey {
-        LobeKey::of_family(self.sigma(), self.gamma())
-    }
-
-    #[inline]
-    fn has_pole(&self) -> bool {
-        has_pole(self.gamma())
-    }
-
-    fn bytes(&self) -> usize {
-        self.surface.shape.bytes()
     }
 }
 

@@ -19,6 +19,7 @@ use microfacet_lanes::{Ints, Lanes, Work, f32x4, widest};
 
 use self::axes::{Axes, Place, SHAPE, SIGMA, View};
 use self::spline::{FOUR, THREE};
+use super::batch::of_each;
 use super::moments::Moments;
 use crate::elementary::exp2;
 use crate::error::{BatchError, same_lengths};
@@ -171,16 +172,17 @@ impl AlbedoAt<'_> {
         v: &[V],
         e: &mut [f32],
     ) -> Result<(), BatchError> {
+        // To combine the coefficients of all views takes as long as four single calls.
+        if v.len() < f32x4::WIDTH {
+            return of_each(v, e, |v| self.albedo(v));
+        }
         same_lengths(&[("v", v.len()), ("e", e.len())])?;
         let row = self.row();
         let done = widest(Batch { albedo: *self, row: &row, v, e });
         let (v, e) = (&v[done..], &mut e[done..]);
         // What does not fill more lanes may fill four.
         let done = self.albedo_groups::<f32x4, V>(&row, v, e);
-        for (v, e) in v[done..].iter().zip(&mut e[done..]) {
-            *e = self.albedo(*v);
-        }
-        Ok(())
+        of_each(&v[done..], &mut e[done..], |v| self.albedo(v))
     }
 
     /// E of all views but those too few to fill lanes; how many they are.
