@@ -52,6 +52,8 @@ pub struct AlbedoIntegrator {
     /// Asinh slope of the cut across the view, where tails are shorter: the share beyond w is less
     /// than cosh^(−2k−1) √s w.
     cut_across: f64,
+    /// The slope at that cut.
+    slope_across: f64,
     /// Slopes across the view of skewed lobes.
     across: SlopeTable,
 }
@@ -113,6 +115,7 @@ impl AlbedoIntegrator {
             tolerance,
             cut,
             cut_across,
+            slope_across: shape.slope(cut_across),
             across: SlopeTable::across(&shape, cut_across),
         }
     }

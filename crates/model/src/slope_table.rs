@@ -63,6 +63,15 @@ impl SlopeTable {
         (polynomial(slope, t), polynomial(density, t))
     }
 
+    /// The slope at w alone, as of [`at`](Self::at).
+    #[inline]
+    pub(crate) fn slope(&self, w: f64) -> f64 {
+        let place = w.max(0.0) * PIECES;
+        let i = place as usize;
+        let Some([slope, _]) = self.pieces.get(i) else { return self.beyond(w).0 };
+        polynomial(slope, 2.0 * (place - i as f64) - 1.0)
+    }
+
     #[cold]
     #[inline(never)]
     fn beyond(&self, w: f64) -> (f64, f64) {

@@ -85,7 +85,14 @@ impl SmithTable {
     #[inline]
     pub(crate) fn area(&self, cos: f64, rho2: f64) -> f64 {
         let length2 = cos * cos + rho2;
-        let half = self.smooth(length2 / rho2).map_or(0.5 * cos.abs(), |h| h * length2.sqrt());
+        self.area_of(cos, length2.sqrt(), length2 / rho2)
+    }
+
+    /// [`area`](Self::area) of a direction by its `cos`, its length, and the square of the length
+    /// over that of its horizontal part.
+    #[inline]
+    pub(crate) fn area_of(&self, cos: f64, length: f64, square: f64) -> f64 {
+        let half = self.smooth(square).map_or(0.5 * cos.abs(), |h| h * length);
         (half + 0.5 * cos).max(0.0)
     }
 
