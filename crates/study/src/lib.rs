@@ -104,6 +104,7 @@ fn print_head(columns: &[&str]) {
 /// The albedo tables of a specification, with their certificates.
 fn baked(spec: &AlbedoSpec) -> Result<Vec<Table>, AlbedoError> {
     let stage = Stage::unwatched();
-    let places = [interior_references(spec, &stage)?, edge_references(spec, &stage)?].concat();
-    certified(spec, bake(spec)?, &places, &stage)
+    let tables = bake(spec)?;
+    let edges = edge_references(spec, &tables, &stage)?;
+    certified(spec, tables, &[interior_references(spec, &stage)?, edges].concat(), &stage)
 }

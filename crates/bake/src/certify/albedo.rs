@@ -21,6 +21,8 @@ use crate::progress::Stage;
 
 /// Accuracy of the model's values that tables are compared with, as a multiple of that of a node.
 const FINER: f64 = 0.1;
+/// [`FINER`] of tilted lobes, to whose errors the estimates of the model's own are added.
+const AS_FINE: f64 = 1.0;
 /// Smallest tolerance for a reflectance with a kink: a smaller one would take seconds.
 const FINEST_OF_KINKS: f64 = 1e-6;
 
@@ -51,12 +53,29 @@ pub fn interior_references(
 }
 
 /// The model's values at corners, in the middle of every cell along every edge, of smooth surfaces,
-/// in the middles of cells over azimuths, and on the crease of a tilted lobe. Each point is one
-/// step of the stage.
-pub fn edge_references(spec: &AlbedoSpec, stage: &Stage) -> Result<Vec<Reference>, AlbedoError> {
-    let points = [edges(spec), smooth(spec), middles(spec), crease(spec)].concat();
+/// in the middles of cells over azimuths, and on the crease of a tilted lobe, for which `tables`
+/// tell the cells that matter. Each point is one step of the stage.
+///
+/// # Errors
+/// [`AlbedoError`] for a lobe outside the domain, or if a table does not cover its own domain.
+pub fn edge_references(
+    spec: &AlbedoSpec,
+    tables: &[Table],
+    stage: &Stage,
+) -> Result<Vec<Reference>, AlbedoError> {
+    let mut middles = middles(spec);
+    if is_bound(spec) {
+        middles = likely(spec, tables, middles)?;
+    }
+    let points = [edges(spec), smooth(spec), middles, crease(spec)].concat();
     stage.split(points.len());
     references(spec, points, true, stage)
+}
+
+/// Whether errors are upper bounds, which include what the model's values may be off: those of
+/// tilted lobes take long, and their tables err by far more.
+pub(crate) fn is_bound(spec: &AlbedoSpec) -> bool {
+    spec.lobe.form() == LobeForm::Ellipsoid
 }
 
 /// The model's values, and those of the isotropic stand-in if asked for.
@@ -68,7 +87,8 @@ fn references(
 ) -> Result<Vec<Reference>, AlbedoError> {
     let integrand = Integrand::new(&spec.reflectance)?;
     let finest = if spec.reflectance.indices().is_some() { FINEST_OF_KINKS } else { 0.0 };
-    let tolerance = (FINER * spec.tolerance).max(finest);
+    let finer = if is_bound(spec) { AS_FINE } else { FINER };
+    let tolerance = (finer * spec.tolerance).max(finest);
     let gammas = points.iter().map(|point| point.site.gamma);
     // A round lobe of the family stands in for lobes of the family that are not round.
     let has_stand_in = with_stand_in
@@ -179,13 +199,37 @@ impl<'a> Reader<'a> {
             Some(own) => own.at(*v),
             None => Reading::from_table(self.table, *site)?.at(*v),
         };
+        let unsure = if is_bound(self.spec) { exact.error } else { 0.0 };
         let exact = exact.of(self.table.subject.masking.unwrap_or_default());
         let exact = match self.spec.reflectance {
             Reflectance::Mirror => [&exact[..], &[exact[0] + exact[1]]].concat(),
             _ => exact.to_vec(),
         };
-        Ok(got.iter().zip(&exact).map(|(got, exact)| (got - exact).abs()).collect())
+        Ok(got.iter().zip(&exact).map(|(got, exact)| (got - exact).abs() + unsure).collect())
     }
+}
+
+/// Whether the certificate of any directional table will state an error above `limit`, because one
+/// of these references finds it.
+///
+/// # Errors
+/// [`AlbedoError`] if a table does not cover its own domain.
+pub fn exceeds(
+    spec: &AlbedoSpec,
+    tables: &[Table],
+    references: &[Reference],
+    limit: f64,
+) -> Result<bool, AlbedoError> {
+    let promised: Vec<Reference> =
+        references.iter().filter(|at| at.point.promised).cloned().collect();
+    for table in tables.iter().filter(|table| table.kind == Kind::Albedo) {
+        let reader = Reader::new(spec, table, promised.first())?;
+        let errors = measured_at(promised.clone(), |at| reader.errors(at))?;
+        if errors.iter().any(|(_, errors)| largest(errors) > limit) {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 /// The largest error of any quantity of one table at each of some points; each point is one step of
@@ -435,15 +479,51 @@ impl Reading {
 /// # Errors
 /// [`MaterialError`] if the table is invalid.
 pub fn missed_by_half(spec: &AlbedoSpec, table: &Table, axis: usize) -> Result<f64, MaterialError> {
-    let sites = Site::all(&spec.axes);
+    let missed = missed(table, axis, &Site::all(&spec.axes))?;
+    Ok(missed.iter().map(|errors| largest(errors)).fold(0.0, f64::max))
+}
+
+/// How much of each quantity a single lobe's table misses at some sites if every other node along
+/// an axis is left out.
+fn missed(table: &Table, axis: usize, sites: &[Site]) -> Result<Vec<Vec<f64>>, MaterialError> {
+    let Some(first) = sites.first() else { return Ok(Vec::new()) };
     let half = half(table, axis);
-    let [whole, half] =
-        [Reading::from_table(table, sites[0])?, Reading::from_table(&half, sites[0])?];
+    let [whole, half] = [Reading::from_table(table, *first)?, Reading::from_table(&half, *first)?];
     let missed = |site: &Site| {
         let (a, b) = (whole.at(site.view()), half.at(site.view()));
-        a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+        a.iter().zip(b).map(|(a, b)| (a - b).abs()).collect()
     };
-    Ok(sites.par_iter().map(missed).reduce(|| 0.0, f64::max))
+    Ok(sites.par_iter().map(missed).collect())
+}
+
+/// Of the middles of cells, one in this number is measured for each quantity and axis. With twice
+/// as many the lobes of `tables/recipes/tilted-lobes.toml` are certified the same errors.
+const ONE_IN: usize = 16;
+
+/// Of some points, those at which a table of a single lobe with half of the nodes along an axis
+/// misses most of a quantity: where it errs most, the whole table does.
+fn likely(
+    spec: &AlbedoSpec,
+    tables: &[Table],
+    points: Vec<Point>,
+) -> Result<Vec<Point>, MaterialError> {
+    let sites: Vec<Site> = points.iter().map(|point| point.site).collect();
+    let mut is_likely = vec![false; points.len()];
+    for table in tables.iter().filter(|table| table.kind == Kind::Albedo) {
+        for axis in spec.refinable() {
+            let missed = missed(table, axis, &sites)?;
+            let of_quantity = |i: usize| {
+                let mut order: Vec<usize> = (0..points.len()).collect();
+                order.sort_by(|&a, &b| missed[b][i].total_cmp(&missed[a][i]));
+                order.truncate(points.len() / ONE_IN);
+                order
+            };
+            for at in (0..quantities(spec).len()).flat_map(of_quantity) {
+                is_likely[at] = true;
+            }
+        }
+    }
+    Ok(points.into_iter().zip(is_likely).filter(|at| at.1).map(|at| at.0).collect())
 }
 
 /// A table with every other node along an axis.

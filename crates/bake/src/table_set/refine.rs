@@ -3,7 +3,7 @@
 use microfacet_tables::{Precision, Table};
 
 use crate::bake;
-use crate::bake::albedo::{AlbedoError, AlbedoSpec};
+use crate::bake::albedo::{AlbedoError, AlbedoSpec, Nodes};
 use crate::certify::albedo;
 use crate::plan::AlbedoWork;
 use crate::progress::Meter;
@@ -34,6 +34,7 @@ pub(super) fn albedo_tables(
     let mut ahead = work.ahead(spec);
     let mut spec = spec.clone();
     let mut coarser: Option<(f64, Vec<Vec<Table>>)> = None;
+    let mut kept = Nodes::default();
     let mut doubling = 0;
     let sets = loop {
         let work = AlbedoWork::new(&spec);
@@ -43,22 +44,31 @@ pub(super) fn albedo_tables(
             progress.expect(work.doubling() - known);
         }
         let AlbedoWork { nodes, edges, climbs, .. } = work;
-        let edges = albedo::edge_references(&spec, &progress.stage(edges))?;
-        let references = [&interior[..], &edges].concat();
-        let baked = bake::albedo::bake_in(&spec, &all, &progress.stage(nodes))?;
-        let climbs = climbs / all.len() as f64;
-        let certify =
-            |tables| albedo::certified(&spec, tables, &references, &progress.stage(climbs));
-        let sets = baked.into_iter().map(certify).collect::<Result<Vec<_>, AlbedoError>>()?;
-        let full = sets[0].clone();
-        let error = full.iter().map(|table| table.certificate.worst()).fold(0.0, f64::max);
+        let baked = bake::albedo::bake_in(&spec, &all, &mut kept, &progress.stage(nodes))?;
+        let full = baked[0].clone();
         let refinable = spec.refinable();
-        match coarser.take() {
-            Some((before, coarser)) if refinable.len() == 1 && error > WORTH * before => {
-                break coarser;
+        // Where a table that could be refined has too large an error inside, none of its edges
+        // makes it smaller. With one axis to refine, the next doubling is judged by this error.
+        let is_draft = doubling < spec.doublings()
+            && refinable.len() > 1
+            && albedo::exceeds(&spec, &full, &interior, spec.target())?;
+        if is_draft {
+            progress.forget(edges + climbs);
+        } else {
+            let edges = albedo::edge_references(&spec, &full, &progress.stage(edges))?;
+            let references = [&interior[..], &edges].concat();
+            let climbs = climbs / all.len() as f64;
+            let certify =
+                |tables| albedo::certified(&spec, tables, &references, &progress.stage(climbs));
+            let sets = baked.into_iter().map(certify).collect::<Result<Vec<_>, AlbedoError>>()?;
+            let error = sets[0].iter().map(|table| table.certificate.worst()).fold(0.0, f64::max);
+            match coarser.take() {
+                Some((before, coarser)) if refinable.len() == 1 && error > WORTH * before => {
+                    break coarser;
+                }
+                _ if error <= spec.target() || doubling == spec.doublings() => break sets,
+                _ => coarser = Some((error, sets)),
             }
-            _ if error <= spec.target() || doubling == spec.doublings() => break sets,
-            _ => coarser = Some((error, sets)),
         }
         let mut coarsest = (0.0, spec.axes.len() - 1);
         for &axis in refinable.iter().filter(|_| refinable.len() > 1) {

@@ -234,10 +234,10 @@ impl AlbedoSpec {
 }
 
 /// Factor of the error that nodes of a lobe aim at. The kink that the clamp of G1(l) leaves in a
-/// tilted lobe takes quadrature to high orders, so that its nodes aim at a thirtieth of the error
-/// of the table instead of a three-hundredth.
+/// tilted lobe takes quadrature to high orders, so that its nodes aim at a tenth of the error of
+/// the table instead of a three-hundredth.
 fn kink(lobe: &AlbedoLobe) -> f64 {
-    if lobe.form() == LobeForm::Ellipsoid { 10.0 } else { 1.0 }
+    if lobe.form() == LobeForm::Ellipsoid { 30.0 } else { 1.0 }
 }
 
 fn is_of_view(axis: &Axis) -> bool {

@@ -10,6 +10,7 @@ mod albedo_spec;
 mod integrand;
 mod lobe;
 
+use std::collections::HashMap;
 use std::fmt;
 
 use glam::Vec3;
@@ -87,6 +88,11 @@ impl Site {
         Vec3::new((sin * c) as f32, (sin * s) as f32, self.cos as f32)
     }
 
+    /// The bits of all quantities.
+    fn key(&self) -> [u64; 5] {
+        [self.gamma, self.sigma, self.eta, self.phi, self.cos].map(f64::to_bits)
+    }
+
     /// The sites of all nodes, the last axis fastest.
     pub(crate) fn all(axes: &[Axis]) -> Vec<Self> {
         product(axes.iter().map(|axis| &axis.nodes[..]))
@@ -162,39 +168,49 @@ microfacet_core::debug_in_words!(AlbedoError);
 /// [`AlbedoError`] if a node is no valid albedo or not accurate enough, or the specification lies
 /// outside the domain.
 pub fn bake(spec: &AlbedoSpec) -> Result<Vec<Table>, AlbedoError> {
-    Ok(bake_in(spec, &[spec.precision], &Stage::unwatched())?.concat())
+    let kept = &mut Nodes::default();
+    Ok(bake_in(spec, &[spec.precision], kept, &Stage::unwatched())?.concat())
 }
 
 /// Bakes the tables in several precisions from one pass over the nodes, which takes nearly all the
-/// time; each node is one step of the stage.
+/// time; each node that is not among those `kept` is one step of the stage. What is kept has to be
+/// of the same lobe, reflectance and tolerance, as of a table that this one
+/// [refines](AlbedoSpec::refined).
 pub fn bake_in(
     spec: &AlbedoSpec,
     precisions: &[Precision],
+    kept: &mut Nodes,
     stage: &Stage,
 ) -> Result<Vec<Vec<Table>>, AlbedoError> {
     let sites = Site::all(&spec.axes);
-    stage.split(sites.len());
+    let new: Vec<&Site> = sites.iter().filter(|site| !kept.0.contains_key(&site.key())).collect();
+    stage.split(new.len());
     let gammas = sites.iter().map(|site| site.gamma);
-    Models::with(&spec.lobe, gammas, spec.tolerance, |models| {
+    let integrated = Models::with(&spec.lobe, gammas, spec.tolerance, |models| {
         let integrand = Integrand::new(&spec.reflectance)?;
-        let nodes = sites
-            .par_iter()
-            .map(|site| {
-                let node = node(spec, &integrand, models.at(site), site);
-                stage.step();
-                node
-            })
-            .collect::<Result<Vec<Node>, AlbedoError>>()?;
-        let rounded = |&precision: &Precision| {
-            let spec = AlbedoSpec { precision, ..spec.clone() };
-            let tables = spec.maskings.iter().map(|&masking| tables(&spec, &nodes, masking));
-            Ok(tables.collect::<Result<Vec<_>, AlbedoError>>()?.concat())
+        let of = |site: &&Site| {
+            let node = node(spec, &integrand, models.at(site), site)?;
+            stage.step();
+            Ok((site.key(), node))
         };
-        precisions.iter().map(rounded).collect()
-    })
+        new.par_iter().map(of).collect::<Result<Vec<_>, AlbedoError>>()
+    })?;
+    kept.0.extend(integrated);
+    let nodes: Vec<Node> = sites.iter().map(|site| kept.0[&site.key()]).collect();
+    let rounded = |&precision: &Precision| {
+        let spec = AlbedoSpec { precision, ..spec.clone() };
+        let tables = spec.maskings.iter().map(|&masking| tables(&spec, &nodes, masking));
+        Ok(tables.collect::<Result<Vec<_>, AlbedoError>>()?.concat())
+    };
+    precisions.iter().map(rounded).collect()
 }
 
+/// Nodes that were integrated: a table with more nodes along an axis has those of the table before.
+#[derive(Default)]
+pub struct Nodes(HashMap<[u64; 5], Node>);
+
 /// The values of a node for both forms of masking, and their error estimate.
+#[derive(Clone, Copy)]
 struct Node {
     values: Albedo<CHANNELS>,
     /// μ/(μ + A), for lobes whose G1(v) is clamped.
@@ -289,4 +305,34 @@ fn average(spec: &AlbedoSpec, directional: &Table, masking: Masking) -> Result<T
     let values = pairs.map(at).collect::<Result<Vec<_>, MaterialError>>()?.concat();
     let (name, kind) = (spec.name(Kind::AlbedoAverage, masking), Kind::AlbedoAverage);
     Ok(Table::new(name, kind, directional.subject.clone(), axes, values))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table_spec::Level;
+
+    #[test]
+    fn a_finer_table_keeps_all_nodes_of_the_one_before() {
+        let upright = AlbedoLobe::student_t([0.3, 0.2], 3.0);
+        let tilted = AlbedoLobe { theta: Some([0.1, -0.2, 0.5]), ..upright.clone() };
+        for lobe in [upright, tilted] {
+            let maskings = vec![Masking::HeightCorrelated];
+            let (mirror, precision) = (Reflectance::Mirror, Precision::F32);
+            let coarse = AlbedoSpec::new(lobe, mirror, maskings, Level::DRAFT, precision).unwrap();
+            let bake_in = |spec: &AlbedoSpec, kept: &mut Nodes| {
+                bake_in(spec, &[precision], kept, &Stage::unwatched()).unwrap()
+            };
+            for axis in coarse.refinable() {
+                let fine = coarse.refined(axis);
+                let mut kept = Nodes::default();
+                bake_in(&coarse, &mut kept);
+                assert_eq!(kept.0.len(), coarse.nodes());
+                let with_it = bake_in(&fine, &mut kept);
+                // None of the first table's nodes is at another place.
+                assert_eq!(kept.0.len(), fine.nodes());
+                assert!(with_it == bake_in(&fine, &mut Nodes::default()));
+            }
+        }
+    }
 }
