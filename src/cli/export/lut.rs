@@ -9,7 +9,7 @@ use microfacet_baker::store::OutputFolder;
 use microfacet_export::texture;
 use microfacet_export::texture::engine::{LAYOUTS, Layout};
 use microfacet_export::texture::{
-    BeforeRounding, Channels, Checks, Deviation, Format, Made, Shapes, TextureSpec, shader_lines,
+    BeforeRounding, Channels, Deviation, Format, Made, Shapes, TextureSpec, shader_lines,
 };
 use microfacet_sampler::Masking;
 use microfacet_tables::SIGMA_MAX;
@@ -166,9 +166,8 @@ fn of_family(args: &Args) -> Result<()> {
     );
     let out = OutputFolder::open(&args.out)?;
     note_unfitted(&specs[0]);
-    let made = make(&specs, true, |spec, [values, checks]| {
-        let texture = spec.make(values)?;
-        let checks = Checks::new(spec, checks)?;
+    let made = make(&specs, true, |spec, stages| {
+        let (texture, checks) = spec.make_checked(stages)?;
         let errors = checks.of(&texture, |_| true);
         if !args.half {
             return Ok(Made { texture, errors, before_rounding: None });

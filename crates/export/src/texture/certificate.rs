@@ -1,23 +1,21 @@
-//! The errors of what a filter reads against the model, at other points than those of the fit.
+//! The errors of what a filter reads against the model: at the points of the fit, where linear
+//! interpolation errs most, at others that are even over the texture, and along its edges.
 
 use microfacet_baker::progress::Stage;
 use microfacet_core::Masking;
 use microfacet_model::ParameterError;
 
-use super::axis::{AXES, Place, TexelAxis, coordinates, place};
+use super::axis::{AXES, Place, TexelAxis, array, coordinates, place};
 use super::fit::{Filter, Tap};
 use super::truth::{Channel, FINEST, Truth, truths};
 use super::{Texture, TextureSpec};
 
-/// Points of a certificate for each texel, and the fewest and the most of them.
-const PER_TEXEL: usize = 12;
-const POINTS: [usize; 2] = [20_000, 200_000];
-/// Points in each cell along edges, where only half as many texels are near: of textures with two
-/// axes, and with three.
-const PER_EDGE: [usize; 2] = [16, 6];
-/// Points for each texel of averages, whose points take longer.
-const PER_AVERAGE: usize = 5;
-const AVERAGES: [usize; 2] = [1_000, 6_000];
+/// Even points of a certificate for each texel, and the fewest and the most of them, of albedos and
+/// of averages.
+const PER_TEXEL: usize = 2;
+const EVENLY: [[usize; 2]; 2] = [[2_000, 200_000], [50, 6_000]];
+/// Points in each cell along edges, where only half as many texels are near.
+const PER_EDGE: usize = 6;
 /// Points within each cell along γ: the texel and the middle, where linear interpolation errs most
 /// in either direction, and in turn one of `BETWEEN`.
 const WITHIN: [f64; 2] = [0.0, 0.5];
@@ -74,6 +72,8 @@ pub fn known(
 pub struct Checks {
     filter: Filter,
     points: Vec<(Known, Tap)>,
+    /// How many of them, the first ones, are even over the texture's coordinates.
+    even: usize,
 }
 
 impl Deviation {
@@ -99,45 +99,43 @@ fn rounded_up(x: f64) -> f64 {
 }
 
 impl Checks {
-    /// Points throughout the certified domain, along its edges and in its corners.
-    ///
-    /// # Errors
-    /// [`ParameterError`] for a place outside the domain of the model.
-    pub fn new(spec: &TextureSpec, stage: &Stage) -> Result<Self, ParameterError> {
+    /// Even points throughout the certified domain, points along its edges and in its corners, and
+    /// those of a fit that are inside it.
+    pub(super) fn new(
+        spec: &TextureSpec,
+        fitted: Vec<(Known, Tap)>,
+        stage: &Stage,
+    ) -> Result<Self, ParameterError> {
         let (axes, filter) = (&spec.axes, Filter::new(&spec.axes));
-        let directional = spec.is_directional();
-        let (per, [fewest, most]) =
-            if directional { (PER_TEXEL, POINTS) } else { (PER_AVERAGE, AVERAGES) };
-        let count = (per * filter.texels).clamp(fewest, most);
-        let mut at = Vec::new();
+        let average = usize::from(!spec.is_directional());
+        let [fewest, most] = EVENLY[average];
+        let count = (PER_TEXEL * filter.texels).clamp(fewest, most);
         let shapes = axes.iter().find(|axis| axis.is_of_shapes());
         let slices = shapes.map_or(vec![f64::NAN], slices);
-        // Averages need no points along edges: theirs are dense enough.
-        let longest = axes.iter().map(TexelAxis::len).max().unwrap_or(1);
-        let edges =
-            if directional { PER_EDGE[usize::from(axes.len() == AXES)] * (longest - 1) } else { 1 };
-        for (i, &slice) in slices.iter().enumerate() {
-            let share = count / slices.len();
-            at.extend((0..share).map(|j| even(axes, slice, i * share + j)));
-            for edge in 0..=edges {
-                let along = edge as f64 / edges as f64;
-                at.extend((0..4).map(|corner| edge_point(axes, slice, along, corner)));
+        let share = count / slices.len();
+        let of = |at: [f64; AXES]| match place(axes, spec.gamma, &at) {
+            place if spec.promises(&place) => (place, filter.tap(axes, &at)),
+            below => {
+                let place = Place { cos: Some(spec.least_cos), ..below };
+                (place, filter.tap(axes, &coordinates(axes, &place)))
+            }
+        };
+        let evenly = slices
+            .iter()
+            .enumerate()
+            .flat_map(|(i, &slice)| (0..share).map(move |j| even(axes, slice, i * share + j)));
+        let mut points: Vec<(Place, Tap)> = evenly.map(of).collect();
+        let even = points.len();
+        if spec.is_directional() {
+            for &slice in &slices {
+                points.extend(edges(axes, slice, PER_EDGE).map(of));
+                points.extend(spec.horizon(&filter, slice, PER_EDGE));
             }
         }
-        let (mut places, mut taps) = (Vec::new(), Vec::new());
-        for mut at in at {
-            let mut place = place(axes, spec.gamma, &at);
-            if place.cos.is_some_and(|cos| cos < spec.least_cos) {
-                place.cos = Some(spec.least_cos);
-                at = coordinates(axes, &place);
-            }
-            places.push(place);
-            taps.push(filter.tap(axes, &at));
-        }
-        let gammas = places.iter().map(|place| place.gamma);
-        let truths = spec.truths(gammas, places.len(), |i| places[i], stage)?;
-        let known = places.into_iter().zip(truths).map(|(place, truth)| Known { place, truth });
-        Ok(Self { filter, points: known.zip(taps).collect() })
+        let (places, taps): (Vec<Place>, Vec<Tap>) = points.into_iter().unzip();
+        let inside = fitted.into_iter().filter(|(known, _)| spec.promises(&known.place));
+        let points = spec.known(places, stage)?.zip(taps).chain(inside).collect();
+        Ok(Self { filter, points, even })
     }
 
     /// Checks at places whose albedos are known.
@@ -145,7 +143,7 @@ impl Checks {
         let filter = Filter::new(&spec.axes);
         let tap = |known: &Known| filter.tap(&spec.axes, &coordinates(&spec.axes, &known.place));
         let points = known.iter().map(|known| (*known, tap(known))).collect();
-        Self { filter, points }
+        Self { filter, points, even: known.len() }
     }
 
     /// The errors of a texture at the points that `counts` counts.
@@ -153,12 +151,15 @@ impl Checks {
         let planes: Vec<Vec<f64>> = (0..texture.spec.channels.len())
             .map(|channel| texture.plane(channel).map(f64::from).collect())
             .collect();
-        let counted: Vec<_> =
-            self.points.iter().filter(|(known, _)| counts(&known.place)).collect();
+        let counted = |points: &[(Known, Tap)]| {
+            points.iter().filter(|(known, _)| counts(&known.place)).copied().collect::<Vec<_>>()
+        };
+        let (even, others) = self.points.split_at(self.even);
+        let (even, others) = (counted(even), counted(others));
         let deviation = |(quantity, of): (&'static str, Reading)| {
             let (mut largest, mut at, mut coarse, mut sum) = (-1.0, None, 0.0_f64, 0.0);
             let (mut share, mut shares) = (0.0_f64, 0.0);
-            for (known, tap) in &counted {
+            for (i, (known, tap)) in even.iter().chain(&others).enumerate() {
                 let error = |read: fn(&Filter, &[f64], Tap) -> f64| {
                     let read = |channel: usize| read(&self.filter, &planes[channel], *tap);
                     let (got, want) = of(&read, known.truth);
@@ -166,14 +167,16 @@ impl Checks {
                 };
                 let (fine, want) = error(Filter::read);
                 coarse = coarse.max(error(Filter::read_coarsely).0);
-                sum += fine * fine;
                 share = share.max(fine / want);
-                shares += (fine / want).powi(2);
+                if i < even.len() {
+                    sum += fine * fine;
+                    shares += (fine / want).powi(2);
+                }
                 if fine > largest {
                     (largest, at) = (fine, Some(known.place));
                 }
             }
-            let [rms, mean] = [sum, shares].map(|sum| (sum / counted.len() as f64).sqrt());
+            let [rms, mean] = [sum, shares].map(|sum| (sum / even.len() as f64).sqrt());
             let relative = [share, mean];
             Some(Deviation { quantity, largest, at: at?, rms, coarse, relative })
         };
@@ -231,24 +234,24 @@ fn even(axes: &[TexelAxis], slice: f64, i: usize) -> [f64; AXES] {
     array(axes.iter().map(&mut along))
 }
 
-/// A point of an edge: of the two axes other than γ one is at `along`, the other at an end.
-fn edge_point(axes: &[TexelAxis], slice: f64, along: f64, corner: usize) -> [f64; AXES] {
-    let mut nth = 0;
-    let mut coordinate = |axis: &TexelAxis| {
-        if axis.is_of_shapes() {
-            return slice;
-        }
-        nth += 1;
-        // Corners 0 and 1 run along the first axis, corners 2 and 3 along the second.
-        if nth - 1 == corner / 2 { along } else { (corner % 2) as f64 }
+/// Points along the roughest surfaces and along the normal view, in the slice of a shape. The other
+/// two edges are the smallest cosine that counts: on a mirror all views are above it.
+fn edges(axes: &[TexelAxis], slice: f64, per_cell: usize) -> impl Iterator<Item = [f64; AXES]> {
+    let longest = axes.iter().map(TexelAxis::len).max().unwrap_or(1);
+    let steps = per_cell * (longest - 1);
+    let point = move |along: f64, first: bool| {
+        let mut nth = 0;
+        array(axes.iter().map(|axis| {
+            if axis.is_of_shapes() {
+                return slice;
+            }
+            nth += 1;
+            if (nth == 1) == first { along } else { 1.0 }
+        }))
     };
-    array(axes.iter().map(&mut coordinate))
-}
-
-fn array(coordinates: impl Iterator<Item = f64>) -> [f64; AXES] {
-    let mut at = [0.0; AXES];
-    at.iter_mut().zip(coordinates).for_each(|(to, c)| *to = c);
-    at
+    (0..=steps)
+        .map(move |i| i as f64 / steps as f64)
+        .flat_map(move |along| [true, false].map(|first| point(along, first)))
 }
 
 #[cfg(test)]

@@ -9,9 +9,10 @@
 
 use super::axis::{AXES, TexelAxis};
 
-/// How often the weights follow the errors. Compared with 20 rounds, 40 reduce the error by 0.2 %
-/// for GGX, and by 10 % for γ = 1.6 in 32 texels.
-const ROUNDS: usize = 25;
+/// How often the weights follow the errors: with up to two axes, and with three, whose points are
+/// many. Compared with 25 rounds, 50 reduce the relative error of GGX at σ = 1 from 1.3e-3 to
+/// 1.2e-3 in 32 × 32 texels.
+const ROUNDS: [usize; 2] = [50, 25];
 /// The most steps of conjugate gradients, and the reduction of the squared residual that ends them.
 const STEPS: usize = 120;
 const ENOUGH: f64 = 1e-18;
@@ -110,7 +111,8 @@ pub(super) fn fit(
     };
     let mut errors = missing(&values);
     let mut equations = Equations::new(filter);
-    for _ in 0..ROUNDS {
+    let rounds = ROUNDS[usize::from(!filter.strides.contains(&0))];
+    for _ in 0..rounds {
         equations.sum(filter, targets, &weights, &errors);
         equations.improve(&mut values);
         errors = missing(&values);

@@ -14,6 +14,8 @@ use super::axis::Place;
 /// The smallest errors that the quadrature aims at, of albedos and of averages, which err by less
 /// than a hundredth of that.
 pub(super) const FINEST: [f64; 2] = [1e-7, 3e-6];
+/// The largest ones, for textures of few texels.
+pub(super) const COARSEST: [f64; 2] = [3e-5, 1e-4];
 
 /// What a channel of a texture holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -133,7 +135,10 @@ mod tests {
     /// What a texture of 32 texels a side is fitted to errs far less than that texture.
     #[test]
     fn values_are_far_better_than_the_error_they_aim_at() {
-        let materials = [(1.7305, 0.0327), (f64::INFINITY, 0.0126), (2.0, 0.3), (1.55, 3.0)];
+        let smooth = [1.55, 2.0, f64::INFINITY].map(|gamma| (gamma, 1e-3));
+        let rough = [1.55, 2.0, f64::INFINITY].map(|gamma| (gamma, 3.0));
+        let between = [(1.7305, 0.0327), (f64::INFINITY, 0.0126), (2.0, 0.3)];
+        let materials = [&smooth[..], &between, &rough].concat();
         let worst = |tolerance: f64, finest: f64, cos: Option<f64>| {
             let place = |i: usize| Place { gamma: materials[i].0, sigma: materials[i].1, cos };
             let of = |tolerance| {
@@ -145,10 +150,10 @@ mod tests {
             pairs.map(|(a, b)| (a.e - b.e).abs().max((a.bias - b.bias).abs())).fold(0.0, f64::max)
         };
         for cos in [1.0, 0.6, 0.02, 1e-4] {
-            let worst = worst(1e-5, 1e-11, Some(cos));
+            let worst = worst(COARSEST[0], 1e-11, Some(cos));
             assert!(worst < 1e-6, "{cos}: {worst}");
         }
-        let worst = worst(3e-5, 1e-9, None);
+        let worst = worst(COARSEST[1], 1e-9, None);
         assert!(worst < 3e-7, "{worst}");
     }
 }
