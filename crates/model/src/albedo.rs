@@ -21,7 +21,7 @@ mod skewed;
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
-use crate::converge::{Albedo, Both, CUT, add, add_place, converge, rules};
+use crate::converge::{Albedo, Both, CUT, RULES, add, add_place, converge};
 use crate::error::{ParameterError, check_cosine};
 use crate::panels::{End, Gauss};
 use crate::shape::Shape;
@@ -36,6 +36,8 @@ const LARGEST_RAPIDITY: f64 = 340.0;
 pub(crate) const PANEL: f64 = 1.5;
 /// Widest panel of φ.
 const SECTOR: f64 = 1.6;
+/// Largest share of the tolerance that a layer along the rim may hold without being resolved.
+const THIN: f64 = 0.05;
 /// A square root is resolved by panels that begin this small: their error is 1e-3 (1e-2)^1.5.
 pub(crate) const ROOT: f64 = 0.01;
 
@@ -45,7 +47,6 @@ pub struct AlbedoIntegrator {
     shape: Shape,
     pub(crate) smith: SmithTable,
     pub(crate) slopes: SlopeTable,
-    rules: Vec<Gauss>,
     pub(crate) tolerance: f64,
     /// Asinh slope at which integrals over the lobe are cut off.
     pub(crate) cut: f64,
@@ -111,7 +112,6 @@ impl AlbedoIntegrator {
             shape,
             smith,
             slopes: SlopeTable::new(&shape, cut),
-            rules: rules(),
             tolerance,
             cut,
             cut_across,
@@ -226,7 +226,7 @@ impl AlbedoIntegrator {
     ) -> Albedo<N> {
         // At a kink orders converge algebraically, and their last difference says less about the
         // error. Elsewhere twice that difference, because two orders may agree by chance.
-        converge(&self.rules, tolerance, if kink { 10.0 } else { 2.0 }, quadrature)
+        converge(&RULES[..], tolerance, if kink { 10.0 } else { 2.0 }, quadrature)
     }
 
     pub(crate) fn view(&self, sigma: [f64; 2], cos: f64, phi: f64) -> Result<View, ParameterError> {
@@ -375,7 +375,9 @@ impl AlbedoIntegrator {
             // l_z falls by 2q/(1 + a r²) per slope r: to √a, where masking sets in, and then to
             // zero.
             let layer = a.sqrt() * (1.0 + a * rim * rim) / (2.0 * q * (1.0 + s * rim * rim).sqrt());
-            End { at: w_rim, scale: layer }
+            // A layer that holds next to nothing of what is seen need not be resolved.
+            let held = self.slopes.at(w_rim).1 * (view.cos - rim * b) * view.scale;
+            End { at: w_rim, scale: layer.max(THIN * self.tolerance / held) }
         } else {
             End::plain(self.cut)
         };

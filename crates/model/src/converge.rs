@@ -1,5 +1,7 @@
 //! Quadrature of albedos at rising orders until two successive ones agree.
 
+use std::sync::LazyLock;
+
 use microfacet_core::Masking;
 
 use crate::panels::Gauss;
@@ -67,9 +69,8 @@ pub(crate) fn largest<const N: usize>(values: &Both<N>) -> f64 {
     values.iter().flatten().copied().fold(0.0, f64::max)
 }
 
-pub(crate) fn rules() -> Vec<Gauss> {
-    LEVELS.iter().map(|&n| Gauss::new(n)).collect()
-}
+/// The rules at successive orders.
+pub(crate) static RULES: LazyLock<[Gauss; LEVELS.len()]> = LazyLock::new(|| LEVELS.map(Gauss::new));
 
 /// The albedos at the first order that is accurate enough, or else at the last.
 ///

@@ -1,11 +1,17 @@
 //! Gauss–Legendre quadrature on graded panels.
 
+use std::sync::LazyLock;
+
 use microfacet_core::fill_gauss_legendre;
 
 /// Width of a graded panel in the variable τ: panels grow by e² from one to the next.
 const STEP: f64 = 2.0;
 /// Most graded panels at an end: their scale is 5e-14 of the interval.
 const MOST: usize = 16;
+
+/// sinh τ at the ends of graded panels: how far k of them reach, in units of the scale.
+static REACHES: LazyLock<[f64; MOST]> =
+    LazyLock::new(|| core::array::from_fn(|k| libm::sinh(STEP * (k + 1) as f64)));
 
 /// Nodes and weights of a Gauss–Legendre rule on [0, 1].
 #[derive(Clone, Debug)]
@@ -91,7 +97,7 @@ impl Gauss {
     /// The rule on panels that shrink towards an end whose scale is 1/`ratio` of their total
     /// length.
     fn towards(&self, ratio: f64) -> &Vec<(f64, f64)> {
-        let panels = libm::asinh(ratio) / STEP;
-        &self.graded[(panels as usize).min(MOST - 1)]
+        let full = REACHES.partition_point(|&reach| reach <= ratio);
+        &self.graded[full.min(MOST - 1)]
     }
 }

@@ -294,7 +294,9 @@ pub(crate) fn solve_decreasing(
         } else {
             0.5 * (lo + hi)
         };
-        if (next - w).abs() <= 4e-16 * w.abs() + 1e-18 || hi - lo <= 4e-16 * lo {
+        // Newton's steps square the error; where the step was a bisection, it must vanish.
+        let close = if next == newton { 1e-9 } else { 4e-16 };
+        if (next - w).abs() <= close * w.abs() + 1e-18 || hi - lo <= 4e-16 * lo {
             return next;
         }
         w = next;

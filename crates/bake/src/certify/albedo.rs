@@ -14,7 +14,8 @@ use microfacet_tables::{
 
 use super::certificate::round_up;
 use super::points::{
-    Point, are_apart, beside, crease, edges, has_azimuths, has_crease, interior, middles, smooth,
+    Point, are_apart, beside, crease, edges, has_azimuths, has_crease, interior, middles,
+    of_averages, smooth,
 };
 use crate::bake::albedo::{AlbedoError, AlbedoSpec, CHANNELS, Integrand, Models, Site, weights};
 use crate::progress::Stage;
@@ -29,9 +30,8 @@ const FINEST_OF_KINKS: f64 = 1e-6;
 /// The model's values for one material and view.
 #[derive(Clone)]
 pub struct Reference {
+    /// With the site after rounding to the sampler's inputs.
     point: Point,
-    /// The site after rounding to the sampler's inputs.
-    site: Site,
     v: Vec3,
     exact: Albedo<CHANNELS>,
     /// |E − E of the isotropic stand-in|, if there is one, by form of masking.
@@ -113,7 +113,9 @@ fn references(
                 Masking::ALL.map(|form| (total(&round, form) - total(&exact, form)).abs())
             };
             stage.step();
-            Ok(Reference { point: point.clone(), site, v, exact, shortcut: round.map(off) })
+            let mut point = point.clone();
+            point.site = site;
+            Ok(Reference { point, v, exact, shortcut: round.map(off) })
         };
         points.par_iter().map(one).collect()
     })
@@ -142,7 +144,7 @@ pub fn certified(
     let certified = |table: Table| {
         let found = match table.kind {
             Kind::Albedo => directional_certificate(spec, &table, references, stage)?,
-            _ => averages(spec, &table, of_form(&table)?, references)?,
+            _ => averages(spec, &table, of_form(&table)?)?,
         };
         let certificate =
             Certificate { quadrature: table.certificate.quadrature.map(round_up), ..found };
@@ -152,7 +154,7 @@ pub fn certified(
 }
 
 /// The errors of all quantities at one point.
-type At = (Reference, Vec<f64>);
+type At = (Point, Vec<f64>);
 
 fn directional_certificate(
     spec: &AlbedoSpec,
@@ -163,7 +165,7 @@ fn directional_certificate(
     let masking = table.subject.masking.unwrap_or_default();
     let reader = Reader::new(spec, table, references.first())?;
     let measured = |at: &Reference| reader.errors(at);
-    let errors = measured_at(references.to_vec(), measured)?;
+    let errors = measured_at(references, measured)?;
     let mut found = climbed(spec, &errors, true, measured, stage)?;
     found.extend(climbed(spec, &errors, false, measured, stage)?);
     let form = Masking::ALL.iter().position(|form| *form == masking).unwrap_or(0);
@@ -187,17 +189,17 @@ impl<'a> Reader<'a> {
         first: Option<&Reference>,
     ) -> Result<Self, MaterialError> {
         let first = first.filter(|_| !spec.lobe.is_family());
-        let own = first.map(|at| Reading::from_table(table, at.site)).transpose()?;
+        let own = first.map(|at| Reading::from_table(table, at.point.site)).transpose()?;
         Ok(Self { spec, table, own })
     }
 
     fn errors(
         &self,
-        Reference { site, v, exact, .. }: &Reference,
+        Reference { point, v, exact, .. }: &Reference,
     ) -> Result<Vec<f64>, MaterialError> {
         let got = match &self.own {
             Some(own) => own.at(*v),
-            None => Reading::from_table(self.table, *site)?.at(*v),
+            None => read(self.table, point.site, *v)?,
         };
         let unsure = if is_bound(self.spec) { exact.error } else { 0.0 };
         let exact = exact.of(self.table.subject.masking.unwrap_or_default());
@@ -224,7 +226,7 @@ pub fn exceeds(
         references.iter().filter(|at| at.point.promised).cloned().collect();
     for table in tables.iter().filter(|table| table.kind == Kind::Albedo) {
         let reader = Reader::new(spec, table, promised.first())?;
-        let errors = measured_at(promised.clone(), |at| reader.errors(at))?;
+        let errors = measured_at(&promised, |at| reader.errors(at))?;
         if errors.iter().any(|(_, errors)| largest(errors) > limit) {
             return Ok(true);
         }
@@ -242,7 +244,7 @@ pub fn errors_at(
 ) -> Result<Vec<f64>, AlbedoError> {
     let references = references(spec, points, false, stage)?;
     let reader = Reader::new(spec, table, references.first())?;
-    let errors = measured_at(references, |at| reader.errors(at))?;
+    let errors = measured_at(&references, |at| reader.errors(at))?;
     Ok(errors.iter().map(|(_, errors)| largest(errors)).collect())
 }
 
@@ -319,13 +321,13 @@ fn climbed(
     let mut tops: Vec<Top> = Vec::new();
     for i in 0..quantities(spec).len() {
         let mut worst: Vec<&At> =
-            errors.iter().filter(|errors| errors.0.point.promised == promised).collect();
+            errors.iter().filter(|(point, _)| point.promised == promised).collect();
         worst.sort_by(|a, b| b.1[i].total_cmp(&a.1[i]));
         let start = tops.len();
         for (at, errors) in worst {
-            let apart = tops[start..].iter().all(|(_, point, _)| are_apart(spec, point, &at.point));
+            let apart = tops[start..].iter().all(|(_, point, _)| are_apart(spec, point, at));
             if tops.len() < start + hills[0] && apart {
-                tops.push((i, at.point.clone(), errors[i]));
+                tops.push((i, at.clone(), errors[i]));
             }
         }
     }
@@ -335,7 +337,7 @@ fn climbed(
         let around: Vec<Vec<Point>> =
             tops.iter().map(|(_, point, _)| beside(spec, point, step)).collect();
         let references = references(spec, around.concat(), true, stage)?;
-        let errors = measured_at(references, measured)?;
+        let errors = measured_at(&references, measured)?;
         let mut from = 0;
         let mut last = None;
         for ((i, point, error), own) in tops.iter_mut().zip(&around) {
@@ -349,7 +351,7 @@ fn climbed(
             if let Some(top) = near.iter().max_by(|a, b| a.1[*i].total_cmp(&b.1[*i]))
                 && top.1[*i] > *error
             {
-                (*point, *error) = (top.0.point.clone(), top.1[*i]);
+                (*point, *error) = (top.0.clone(), top.1[*i]);
             }
         }
         seen.extend(errors);
@@ -358,11 +360,11 @@ fn climbed(
 }
 
 fn measured_at(
-    references: Vec<Reference>,
+    references: &[Reference],
     measured: impl Fn(&Reference) -> Result<Vec<f64>, MaterialError> + Send + Sync,
 ) -> Result<Vec<At>, MaterialError> {
-    let one = |at: Reference| measured(&at).map(|errors| (at, errors));
-    references.into_par_iter().map(one).collect()
+    let one = |at: &Reference| measured(at).map(|errors| (at.point.clone(), errors));
+    references.par_iter().map(one).collect()
 }
 
 /// The quantities that a lookup gives, in the order of their errors.
@@ -381,10 +383,10 @@ fn quantities(spec: &AlbedoSpec) -> Vec<Quantity> {
 fn summary(spec: &AlbedoSpec, errors: &[At], found: &[At]) -> Certificate {
     // The values of one material take hardly more bytes than all figures would.
     let is_range = spec.nodes_of_materials() > 1;
-    let is_promised = |errors: &&At| errors.0.point.promised;
+    let is_promised = |errors: &&At| errors.0.promised;
     let (mut inside, mut outside): (Vec<_>, Vec<_>) = errors.iter().partition(is_promised);
     let rms = |i: usize| {
-        let spread = errors.iter().filter(|at| is_promised(at) && !at.0.point.on_crease);
+        let spread = errors.iter().filter(|at| is_promised(at) && !at.0.on_crease);
         let squares: f64 = spread.clone().map(|errors| errors.1[i] * errors.1[i]).sum();
         round_up((squares / spread.count().max(1) as f64).sqrt())
     };
@@ -406,7 +408,7 @@ fn summary(spec: &AlbedoSpec, errors: &[At], found: &[At]) -> Certificate {
     let worst = |errors: &At| errors.1.iter().copied().max_by(f64::total_cmp);
     let place =
         inside.iter().max_by(|a, b| worst(a).unwrap_or(0.0).total_cmp(&worst(b).unwrap_or(0.0)));
-    let at = place.map(|(Reference { site: Site { gamma, sigma, eta, phi, cos }, .. }, _)| {
+    let at = place.map(|(Point { site: Site { gamma, sigma, eta, phi, cos }, .. }, _)| {
         // A coordinate along an axis of a single node is the same at every point.
         let axis = |name: &str| spec.axes.iter().any(|axis| axis.name == name && axis.len() > 1);
         let all = [
@@ -432,11 +434,12 @@ fn averages(
     spec: &AlbedoSpec,
     table: &Table,
     directional: &Table,
-    references: &[Reference],
 ) -> Result<Certificate, AlbedoError> {
     let set = Tables::from_tables(Default::default(), vec![table.clone()])?;
-    let measured = |at: &Reference| average_errors(&set, directional, &at.site);
-    let errors = measured_at(references.to_vec(), measured)?;
+    let one =
+        |point: Point| average_errors(&set, directional, &point.site).map(|errors| (point, errors));
+    let errors =
+        of_averages(spec).into_par_iter().map(one).collect::<Result<Vec<At>, MaterialError>>()?;
     let mut certificate = summary(spec, &errors, &[]);
     certificate.at.remove(&Coordinate::Cosine);
     Ok(certificate)
@@ -471,6 +474,17 @@ impl Reading {
             Self::Shares(curve) => curve.eval(v).map(f64::from).into(),
         }
     }
+}
+
+/// What a table of the family gives at one view.
+fn read(table: &Table, site: Site, v: Vec3) -> Result<Vec<f64>, MaterialError> {
+    Ok(match table.subject.reflectance {
+        Some(Reflectance::Mirror) => {
+            let moments = TabulatedAlbedo::moments_of_table(table, site.sigma, site.gamma, v)?;
+            all(moments).into()
+        }
+        _ => Reading::from_table(table, site)?.at(v),
+    })
 }
 
 /// The error of a single lobe's table if every other node along an axis is left out: the axis with

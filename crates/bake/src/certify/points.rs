@@ -250,15 +250,21 @@ pub fn smooth(spec: &AlbedoSpec) -> Vec<Point> {
     let heaviest = shapes.iter().copied().min_by(|a, b| gamma(*a).total_cmp(&gamma(*b)));
     material[0] = heaviest.unwrap_or(material[0]);
     let mut points = Vec::new();
-    for pair in spec.axes[1].nodes.windows(2) {
-        material[1] = 0.5 * (pair[0] + pair[1]);
+    for sigma in smooth_cells(spec) {
+        material[1] = sigma;
         let seen = view.cells.iter().skip(1).step_by(3);
         points.extend(seen.map(|&view| point(spec, &material, View::At(view))));
     }
+    points
+}
+
+/// The middles of cells of σ below the promised domain.
+fn smooth_cells(spec: &AlbedoSpec) -> Vec<f64> {
     let Interval { min, max } = spec.lobe.roughness.x();
     let covered = min..PROMISED.0.min(max);
-    points.retain(|place| covered.contains(&place.site.sigma));
-    points
+    let axis = &spec.axes[1];
+    let middles = axis.nodes.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
+    middles.filter(|&t| axis.quantity(t).is_some_and(|sigma| covered.contains(&sigma))).collect()
 }
 
 /// The curve of views at which G1 of a tilted lobe reaches its clamp.
@@ -363,6 +369,16 @@ pub fn middle_count(spec: &AlbedoSpec) -> usize {
     let ranges = ranges(spec);
     let [azimuth, view] = &ranges[..] else { return 0 };
     azimuth.cells.len() * view.cells.len()
+}
+
+/// The materials at which averages of the family are measured: all combinations of ends and middles
+/// of cells, of surfaces smoother than the promised ones, too.
+pub fn of_averages(spec: &AlbedoSpec) -> Vec<Point> {
+    let [shapes, roughness, ..] = &ranges(spec)[..] else { return Vec::new() };
+    let shapes = [&shapes.ends[..], &shapes.cells].concat();
+    let roughness = [&smooth_cells(spec), &roughness.ends[..], &roughness.cells].concat();
+    let seen = |material: Vec<f64>| seen(spec, &material, 1.0);
+    product([&shapes[..], &roughness[..]]).into_iter().map(seen).collect()
 }
 
 /// All combinations of the axes' ends; for the axis `along`, the middles of its cells instead.

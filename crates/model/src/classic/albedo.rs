@@ -13,7 +13,7 @@
 use microfacet_core::Masking;
 
 use super::Marginal;
-use crate::converge::{Albedo, Both, CUT, add, add_place, converge, rules};
+use crate::converge::{Albedo, Both, CUT, RULES, add, add_place, converge};
 use crate::error::{ParameterError, check_cosine};
 use crate::panels::{End, Gauss};
 use crate::smith_table::SmithTable;
@@ -30,7 +30,6 @@ const UNMASKED: f64 = 1e-11;
 pub struct RadialAlbedo<'a> {
     marginal: &'a Marginal<'a>,
     smith: SmithTable,
-    rules: Vec<Gauss>,
     tolerance: f64,
     /// asinh of the unit slopes at which D has a corner, and where it ends; ascending.
     corners: Vec<f64>,
@@ -70,7 +69,6 @@ impl<'a> RadialAlbedo<'a> {
         Self {
             smith: SmithTable::from_excess(|z| marginal.beyond(z).excess, UNMASKED),
             marginal,
-            rules: rules(),
             tolerance,
             corners,
             peak: marginal.half_slope(),
@@ -94,7 +92,7 @@ impl<'a> RadialAlbedo<'a> {
         let rho = self.marginal.sigma() * sin;
         let view = View { cos, sin, scale: 1.0 / self.smith.area(cos, rho * rho) };
         let quadrature = |rule: &Gauss| self.quadrature(rule, &view, &weight);
-        Ok(converge(&self.rules, self.tolerance, 2.0, quadrature))
+        Ok(converge(&RULES[..], self.tolerance, 2.0, quadrature))
     }
 
     /// The integrals for both forms of masking at one order of quadrature.

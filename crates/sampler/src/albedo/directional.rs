@@ -56,17 +56,47 @@ impl Albedo {
     /// [`MaterialError::OtherTable`] for a table that holds no moments or does not cover the
     /// material.
     pub fn from_table(table: &Table, sigma: f64, gamma: f64) -> Result<Self, MaterialError> {
+        Self::of_moments(table, sigma, gamma, Self::new)
+    }
+
+    /// [`moments`](Self::moments) of a table as [`from_table`](Self::from_table) reads it, for a
+    /// single view: without the averages, which take longer than all else.
+    ///
+    /// # Errors
+    /// As [`from_table`](Self::from_table).
+    pub fn moments_of_table(
+        table: &Table,
+        sigma: f64,
+        gamma: f64,
+        v: impl Into<[f32; 3]>,
+    ) -> Result<Moments, MaterialError> {
+        Ok(Self::of_moments(table, sigma, gamma, Self::without_averages)?.moments(v))
+    }
+
+    fn of_moments(
+        table: &Table,
+        sigma: f64,
+        gamma: f64,
+        read: impl FnOnce(&Table, &MaterialPoint) -> Option<Self>,
+    ) -> Result<Self, MaterialError> {
         let point = MaterialPoint { sigma, gamma, eta: f64::NAN };
         let moments = table.subject.reflectance == Some(Reflectance::Mirror);
-        moments.then(|| Self::new(table, &point)).flatten().ok_or_else(|| missing(&point))
+        moments.then(|| read(table, &point)).flatten().ok_or_else(|| missing(&point))
     }
 
     /// `None` where the table does not cover the material.
     pub(super) fn new(table: &Table, point: &MaterialPoint) -> Option<Self> {
-        let curve = Curve::new(table, point)?;
-        let mut albedo = Self { masking: table.subject.masking?, curve, average: [0.0; 3] };
-        albedo.average = albedo.integrate();
+        let mut albedo = Self::without_averages(table, point)?;
+        let curve = &albedo.curve;
+        albedo.average =
+            less_mirror(curve.average(|rows, view, cos| averaged(cos, albedo.at(rows, view, cos))));
         Some(albedo)
+    }
+
+    /// [`new`](Self::new) with averages still to be made.
+    fn without_averages(table: &Table, point: &MaterialPoint) -> Option<Self> {
+        let curve = Curve::new(table, point)?;
+        Some(Self { masking: table.subject.masking?, curve, average: [f32::NAN; 3] })
     }
 
     /// The form of masking.
@@ -125,11 +155,11 @@ impl Albedo {
         0.0 - self.average[0]
     }
 
-    /// The averages by quadrature of the lookups, as the channels of tables: the values that a bake
-    /// writes into tables of averages.
+    /// The averages as the channels of tables, in which a bake writes them: E_avg − 1, and the
+    /// excess of the other moments over E_avg times a mirror's.
     #[must_use]
-    pub fn integrate(&self) -> [f32; 3] {
-        less_mirror(self.curve.average(|rows, view, cos| averaged(cos, self.at(rows, view, cos))))
+    pub fn average_channels(&self) -> [f32; 3] {
+        self.average
     }
 
     /// E − 1 in [−1, 0], and the excess of the other moments over E times a mirror's.

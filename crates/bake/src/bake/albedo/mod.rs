@@ -95,9 +95,14 @@ impl Site {
 
     /// The sites of all nodes, the last axis fastest.
     pub(crate) fn all(axes: &[Axis]) -> Vec<Self> {
-        product(axes.iter().map(|axis| &axis.nodes[..]))
+        let (view, materials) = axes.split_last().expect("the view is an axis");
+        let of_material = |at: Vec<f64>| {
+            let material = Self::new(materials, &at);
+            view.nodes.iter().map(move |&t| Self { cos: material.cos_at(view, t), ..material })
+        };
+        product(materials.iter().map(|axis| &axis.nodes[..]))
             .into_par_iter()
-            .map(|at| Self::new(axes, &at))
+            .flat_map_iter(of_material)
             .collect()
     }
 }
@@ -185,17 +190,24 @@ pub fn bake_in(
     let sites = Site::all(&spec.axes);
     let new: Vec<&Site> = sites.iter().filter(|site| !kept.0.contains_key(&site.key())).collect();
     stage.split(new.len());
-    let gammas = sites.iter().map(|site| site.gamma);
-    let integrated = Models::with(&spec.lobe, gammas, spec.tolerance, |models| {
-        let integrand = Integrand::new(&spec.reflectance)?;
-        let of = |site: &&Site| {
-            let node = node(spec, &integrand, models.at(site), site)?;
-            stage.step();
-            Ok((site.key(), node))
-        };
-        new.par_iter().map(of).collect::<Result<Vec<_>, AlbedoError>>()
-    })?;
-    kept.0.extend(integrated);
+    let integrand = Integrand::new(&spec.reflectance)?;
+    let integrated = |sites: &[&Site], tolerance: f64| {
+        let gammas = sites.iter().map(|site| site.gamma);
+        Models::with(&spec.lobe, gammas, tolerance, |models| {
+            let of = |site: &&Site| {
+                let node = node(spec, &integrand, models.at(site), site)?;
+                stage.step();
+                Ok((site.key(), node))
+            };
+            sites.par_iter().map(of).collect::<Result<Vec<_>, AlbedoError>>()
+        })
+    };
+    let is_smooth = |site: &&Site| spec.lobe.is_family() && site.sigma < SMOOTH;
+    let (smooth, rough): (Vec<&Site>, Vec<&Site>) = new.into_iter().partition(is_smooth);
+    kept.0.extend(integrated(&rough, spec.tolerance)?);
+    if !smooth.is_empty() {
+        kept.0.extend(integrated(&smooth, FINER * spec.tolerance)?);
+    }
     let nodes: Vec<Node> = sites.iter().map(|site| kept.0[&site.key()]).collect();
     let rounded = |&precision: &Precision| {
         let spec = AlbedoSpec { precision, ..spec.clone() };
@@ -216,6 +228,11 @@ struct Node {
     /// μ/(μ + A), for lobes whose G1(v) is clamped.
     clamp: Option<f64>,
 }
+
+/// σ of surfaces that lose so little light that the error aimed at for others is a share of it,
+/// which their compensation would lack, and the error they aim at, as a multiple of that of others.
+const SMOOTH: f64 = 1e-4;
+const FINER: f64 = 0.1;
 
 /// Error allowed in a node, as a multiple of the one aimed at. Narrow lobes with long tails at
 /// grazing views, and the kinks of clamped masking and of total reflection, take the quadrature to
@@ -299,7 +316,7 @@ fn average(spec: &AlbedoSpec, directional: &Table, masking: Masking) -> Result<T
     let mut whole = directional.clone();
     whole.subject.lobe = spec.everywhere();
     let at = |(gamma, sigma): (f64, f64)| {
-        Ok(TabulatedAlbedo::from_table(&whole, sigma, gamma)?.integrate())
+        Ok(TabulatedAlbedo::from_table(&whole, sigma, gamma)?.average_channels())
     };
     let pairs = gammas.iter().flat_map(|&gamma| sigmas.iter().map(move |&sigma| (gamma, sigma)));
     let values = pairs.map(at).collect::<Result<Vec<_>, MaterialError>>()?.concat();
