@@ -13,10 +13,8 @@ use microfacet_tables::{
 };
 
 use super::certificate::round_up;
-use super::points::{
-    Point, are_apart, beside, crease, edges, has_azimuths, has_crease, interior, middles,
-    of_averages, smooth,
-};
+use super::climb::{self, At, climbed};
+use super::points::{Point, crease, edges, interior, middles, of_averages, smooth};
 use crate::bake::albedo::{AlbedoError, AlbedoSpec, CHANNELS, Integrand, Models, Site, weights};
 use crate::progress::Stage;
 
@@ -153,9 +151,6 @@ pub fn certified(
     tables.into_iter().map(certified).collect()
 }
 
-/// The errors of all quantities at one point.
-type At = (Point, Vec<f64>);
-
 fn directional_certificate(
     spec: &AlbedoSpec,
     table: &Table,
@@ -164,10 +159,13 @@ fn directional_certificate(
 ) -> Result<Certificate, AlbedoError> {
     let masking = table.subject.masking.unwrap_or_default();
     let reader = Reader::new(spec, table, references.first())?;
-    let measured = |at: &Reference| reader.errors(at);
-    let errors = measured_at(references, measured)?;
-    let mut found = climbed(spec, &errors, true, measured, stage)?;
-    found.extend(climbed(spec, &errors, false, measured, stage)?);
+    let errors = measured_at(references, |at| reader.errors(at))?;
+    let measured = |points: Vec<Point>| {
+        let references = self::references(spec, points, true, stage)?;
+        Ok(measured_at(&references, |at| reader.errors(at))?)
+    };
+    let mut found = climbed(spec, &errors, true, measured)?;
+    found.extend(climbed(spec, &errors, false, measured)?);
     let form = Masking::ALL.iter().position(|form| *form == masking).unwrap_or(0);
     let shortcuts = references.iter().filter(|at| at.point.promised).filter_map(|at| at.shortcut);
     let stand_in = shortcuts.map(|forms| forms[form]).reduce(f64::max).map(round_up);
@@ -270,93 +268,9 @@ fn average_errors(
     Ok(got.iter().zip(exact).map(|(got, exact)| (got - exact).abs()).collect())
 }
 
-/// Steps of a climb, in cells.
-const STEPS: [f64; 6] = [0.3, 0.3, 0.15, 0.15, 0.07, 0.03];
-/// Hills climbed for each quantity with each step.
-const HILLS: [usize; STEPS.len()] = [4; STEPS.len()];
-/// [`HILLS`] over azimuths, where the middles of all cells are listed. With four hills in the first
-/// step, an F82 error of 8.28e-5 at σ = (0.1, 1), γ = 2 was missed by 3 %; twice as many in the
-/// last steps found 0.2 % more, for one lobe of `brushed-metals.toml`.
-const HILLS_OF_AZIMUTHS: [usize; STEPS.len()] = [8, 5, 2, 1, 1, 1];
-
-/// [`HILLS`] outside the promised domain.
-const HILLS_OUTSIDE: [usize; STEPS.len()] = [1; STEPS.len()];
-
-fn hills(spec: &AlbedoSpec) -> [usize; STEPS.len()] {
-    if has_azimuths(spec) { HILLS_OF_AZIMUTHS } else { HILLS }
-}
-
 /// The largest number of points that climbs measure for the certificate of one directional table.
 pub(crate) fn climbed_count(spec: &AlbedoSpec) -> usize {
-    let directions = 2 * spec.axes.len() * if has_crease(spec) { 2 } else { 1 };
-    let places = hills(spec).into_iter().chain(HILLS_OUTSIDE).sum::<usize>();
-    quantities(spec).len() * places * directions
-}
-
-/// A quantity by its index, a point, and the error of the quantity at that point.
-type Top = (usize, Point, f64);
-
-/// The highest `count` tops of each quantity; the tops of a quantity are neighbours in the list.
-fn highest(tops: &[Top], count: usize) -> Vec<Top> {
-    let of_quantity = |group: &[Top]| {
-        let mut group = group.to_vec();
-        group.sort_by(|a, b| b.2.total_cmp(&a.2));
-        group.truncate(count);
-        group
-    };
-    tops.chunk_by(|a, b| a.0 == b.0).flat_map(of_quantity).collect()
-}
-
-/// Climbs from the points at which each quantity has its largest errors, inside the `promised`
-/// domain or outside, since the largest error lies between the listed points. Returns the points on
-/// the way with their errors.
-fn climbed(
-    spec: &AlbedoSpec,
-    errors: &[At],
-    promised: bool,
-    measured: impl Fn(&Reference) -> Result<Vec<f64>, MaterialError> + Copy + Send + Sync,
-    stage: &Stage,
-) -> Result<Vec<At>, AlbedoError> {
-    let hills = if promised { hills(spec) } else { HILLS_OUTSIDE };
-    let mut tops: Vec<Top> = Vec::new();
-    for i in 0..quantities(spec).len() {
-        let mut worst: Vec<&At> =
-            errors.iter().filter(|(point, _)| point.promised == promised).collect();
-        worst.sort_by(|a, b| b.1[i].total_cmp(&a.1[i]));
-        let start = tops.len();
-        for (at, errors) in worst {
-            let apart = tops[start..].iter().all(|(_, point, _)| are_apart(spec, point, at));
-            if tops.len() < start + hills[0] && apart {
-                tops.push((i, at.clone(), errors[i]));
-            }
-        }
-    }
-    let mut seen: Vec<At> = Vec::new();
-    for (step, count) in STEPS.into_iter().zip(hills) {
-        tops = highest(&tops, count);
-        let around: Vec<Vec<Point>> =
-            tops.iter().map(|(_, point, _)| beside(spec, point, step)).collect();
-        let references = references(spec, around.concat(), true, stage)?;
-        let errors = measured_at(&references, measured)?;
-        let mut from = 0;
-        let mut last = None;
-        for ((i, point, error), own) in tops.iter_mut().zip(&around) {
-            let own = from..from + own.len();
-            from = own.end;
-            // Each hill is climbed from its own points, but the highest of a quantity from the best
-            // of all: between the listed points of this quantity, a hill of another quantity is
-            // often higher.
-            let is_highest = last.replace(*i) != Some(*i);
-            let near = if is_highest { &errors[..] } else { &errors[own] };
-            if let Some(top) = near.iter().max_by(|a, b| a.1[*i].total_cmp(&b.1[*i]))
-                && top.1[*i] > *error
-            {
-                (*point, *error) = (top.0.clone(), top.1[*i]);
-            }
-        }
-        seen.extend(errors);
-    }
-    Ok(seen)
+    climb::count(spec, quantities(spec).len())
 }
 
 fn measured_at(

@@ -3,5 +3,6 @@
 
 pub mod albedo;
 pub mod certificate;
+mod climb;
 pub mod points;
 pub mod radial;
