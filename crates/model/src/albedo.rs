@@ -36,7 +36,8 @@ const LARGEST_RAPIDITY: f64 = 340.0;
 pub(crate) const PANEL: f64 = 1.5;
 /// Widest panel of φ.
 const SECTOR: f64 = 1.6;
-/// Largest share of the tolerance that a layer along the rim may hold without being resolved.
+/// Largest share of the tolerance that a layer along the rim may hold without being resolved, an
+/// upper bound of the error: smooth surfaces take fewer points.
 const THIN: f64 = 0.05;
 /// A square root is resolved by panels that begin this small: their error is 1e-3 (1e-2)^1.5.
 pub(crate) const ROOT: f64 = 0.01;

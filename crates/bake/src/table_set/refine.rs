@@ -49,10 +49,10 @@ pub(super) fn albedo_tables(
         let refinable = spec.refinable();
         // Where a table that could be refined has too large an error inside, none of its edges
         // makes it smaller. With one axis to refine, the next doubling is judged by this error.
-        let is_draft = doubling < spec.doublings()
+        let is_too_coarse = doubling < spec.doublings()
             && refinable.len() > 1
             && albedo::exceeds(&spec, &full, &interior, spec.target())?;
-        if is_draft {
+        if is_too_coarse {
             progress.forget(edges + climbs);
         } else {
             let edges = albedo::edge_references(&spec, &full, &progress.stage(edges))?;
