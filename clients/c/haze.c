@@ -4,9 +4,10 @@
  *     f(v, l) = (1 - r) f'(v, l) + r f'(Rv, l),    f' = (1 - w) f_core + w f_haze,
  *
  * where R turns by half a turn about n. This is the mixture of BRDFs of OpenPBR 1.2, and reciprocal
- * since f'(Rv, Rl) = f'(v, l). The program checks that samples go where their density says with the
- * weights f cos/pdf, that f is reciprocal, that retroreflection sends light back to the view, and
- * that a white pair with compensation returns all light. Exit status 1 if something does not hold. */
+ * since f'(Rv, Rl) = f'(v, l). The program checks that samples go where their density says, with
+ * the weights f cos/pdf, that f is reciprocal, that retroreflection sends light back to the view,
+ * and that a white pair with compensation returns all light. Exit status 1 if something does not
+ * hold. */
 #include <math.h>
 #include <stdio.h>
 
