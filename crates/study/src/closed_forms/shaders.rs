@@ -47,9 +47,9 @@ struct Printed {
 }
 
 /// Sforza & Pellacini 2022 (<https://doi.org/10.2312/stag.20221258>), the conductors of the file
-/// `resources/coefficients/conductors.csv` of their `energy-preservation`; and equation 4 of chapter
-/// 32 of *Ray Tracing Gems* 2019 (<https://doi.org/10.1007/978-1-4842-4427-2_32>), which engines and
-/// denoisers have as `EnvironmentTerm_Rtg` and `env_brdf_approx2`.
+/// `resources/coefficients/conductors.csv` of their `energy-preservation`; and equation 4 of
+/// chapter 32 of *Ray Tracing Gems* 2019 (<https://doi.org/10.1007/978-1-4842-4427-2_32>), which
+/// engines and denoisers have as `EnvironmentTerm_Rtg` and `env_brdf_approx2`.
 const PRINTED: [Printed; 3] = [
     Printed {
         name: "Sforza & Pellacini",
@@ -148,7 +148,8 @@ fn truths(gamma: f64, masking: Masking, sizes: [usize; 2]) -> Result<Vec<Truth>,
 }
 
 impl Printed {
-    /// The largest error and the root mean square of a form of these polynomials, limited to [0, 1].
+    /// The largest error and the root mean square of a form of these polynomials, limited to
+    /// [0, 1].
     fn errors(&self, truths: &[Truth], [over, under]: [&[([u8; 2], f64)]; 2]) -> (Largest, f64) {
         let (mut largest, mut squares) = (Largest::default(), 0.0);
         for ([sigma, mu], wanted) in truths {
