@@ -1,6 +1,7 @@
 //! Haze and retroreflection, against the graph of OpenPBR 1.2 and numbers worked out by hand.
 
-use microfacet_baker::scene::{Material, Roughness};
+use microfacet_baker::plan::{AlbedoVerdict, AlbedoWish, Options, Plan, Verdict};
+use microfacet_baker::scene::{Material, Roughness, Scene};
 use microfacet_tables::Interval;
 
 use super::{document, node, shader};
@@ -76,4 +77,36 @@ fn textures_drive_weight_spread_and_retroreflectivity() {
     assert_close(roughness, [0.36, 0.49], [0.36, 0.49]);
     let share = scene.materials[0].retroreflection;
     assert_close(Roughness::Isotropic(share), [0.2, 0.4], [0.2, 0.4]);
+}
+
+#[test]
+fn both_lobes_are_planned_and_stand_in_a_recipe() {
+    let inputs = [
+        ("base_metalness", 1.0),
+        ("specular_haze", 0.25),
+        ("specular_retroreflectivity", 0.5),
+        ("coat_weight", 1.0),
+        ("coat_roughness", 0.4),
+    ];
+    let scene = shader("open_pbr_surface", &inputs);
+    let plan = |options| Plan::new(&scene, options).unwrap();
+
+    // Core, haze and coat are GGX.
+    assert_eq!(plan(Options::default()).verdicts, [const { Verdict::ClosedForm }; 3]);
+    let tabulated = plan(Options { tabulate_ggx: true, ..Options::default() });
+    let same = Verdict::Same { need: 0, as_material: 0 };
+    assert_eq!(tabulated.verdicts, [Verdict::Bake(0), same.clone(), same]);
+    let albedos = plan(Options { albedo: AlbedoWish::All, ..Options::default() });
+    let baked = |verdict: &AlbedoVerdict| matches!(verdict, AlbedoVerdict::Bake(_));
+    assert_eq!(albedos.albedo_verdicts.len(), 3);
+    assert!(albedos.albedo_verdicts.iter().all(baked), "{:?}", albedos.albedo_verdicts);
+    let [base, coat] = &albedos.materials[..] else { panic!("{:?}", albedos.materials) };
+    assert_eq!(*base, scene.materials[0].entry());
+    assert!(base.haze.is_some() && coat.haze.is_none());
+
+    let again = Scene::from_recipe_str(&scene.to_recipe()).unwrap();
+    assert_eq!(again.materials.len(), 2);
+    for (a, b) in again.materials.iter().zip(&scene.materials) {
+        assert!(a.asks_the_same(b), "{a:?} is not {b:?}");
+    }
 }
