@@ -5,10 +5,10 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use microfacet_baker::scene::{
-    Format, Ignored, LobeSpec, MOST_CANDIDATES, Masking, Material, Names, Origin, Place,
+    Format, Haze, Ignored, LobeSpec, MOST_CANDIDATES, Masking, Material, Names, Origin, Place,
     Reflectance, Roughness, Scene, SceneError, SceneErrorKind, did_you_mean,
 };
-use microfacet_tables::Interval;
+use microfacet_tables::{Interval, MaterialEntry};
 
 use crate::Result;
 use crate::limits::{self, Budget};
@@ -26,15 +26,30 @@ pub(super) struct Lobe {
     pub(super) roughness: Roughness,
     pub(super) gamma: Interval,
     pub(super) fresnel: Option<Reflectance>,
+    /// The weight and the roughness of a second lobe, which shares the rest with this one.
+    pub(super) haze: Option<(Interval, Roughness)>,
+    /// The share in [0, 1] of what is reflected that goes back to where it comes from.
+    pub(super) retroreflection: Interval,
 }
 
 impl Lobe {
+    /// A lobe without a haze or retroreflection.
+    pub(super) fn new(
+        name: Option<&'static str>,
+        roughness: Roughness,
+        gamma: Interval,
+        fresnel: Option<Reflectance>,
+    ) -> Self {
+        let retroreflection = MaterialEntry::SPECULAR;
+        Self { name, roughness, gamma, fresnel, haze: None, retroreflection }
+    }
+
     pub(super) fn ggx(
         name: Option<&'static str>,
         roughness: Roughness,
         fresnel: Option<Reflectance>,
     ) -> Self {
-        Self { name, roughness, gamma: GGX, fresnel }
+        Self::new(name, roughness, GGX, fresnel)
     }
 }
 
@@ -102,7 +117,8 @@ impl Builder {
     pub(super) fn add(&mut self, name: &str, place: &Place, used: bool, lobe: Lobe) -> Result<()> {
         check_count(self.count(), "materials", place)?;
         let name = shortened(name);
-        for Interval { min, max } in [lobe.roughness.x(), lobe.roughness.y()] {
+        let all = [lobe.roughness].into_iter().chain(lobe.haze.map(|(_, roughness)| roughness));
+        for Interval { min, max } in all.flat_map(|roughness| [roughness.x(), roughness.y()]) {
             if !(min >= 0.0 && max < f64::INFINITY) {
                 return Err(place.invalid(format!(
                     "the roughness of \"{name}\" comes to [{min}, {max}]; it must be finite and 0 or \
@@ -117,6 +133,11 @@ impl Builder {
         let material = Material {
             name: self.names.unique(name),
             lobe: LobeSpec::family(lobe.roughness, lobe.gamma),
+            haze: lobe.haze.map(|(weight, roughness)| Haze {
+                weight,
+                lobe: LobeSpec::family(roughness, lobe.gamma),
+            }),
+            retroreflection: lobe.retroreflection,
             fresnel: lobe.fresnel,
             masking: match self.format {
                 Format::Pbrt => Some(Masking::HeightCorrelated),

@@ -217,3 +217,25 @@ fn what_is_no_container_is_refused() {
         assert!(message.contains(part), "{message}");
     }
 }
+
+#[test]
+fn retroreflection_is_red_of_its_texture() {
+    let retro = |inside: &str| format!("{{'KHR_materials_retroreflection': {{{inside}}}}}");
+    let base64 = STANDARD.encode(png());
+    let images = format!(
+        ", 'textures': [{{'source': 0}}], 'images': [{{'uri': 'data:image/png;base64,{base64}'}}]"
+    );
+    let share = |inside: &str| {
+        let material = format!("{{'name': 'm', 'extensions': {}}}", retro(inside));
+        let scene = load("a.gltf", &document(&material, &images));
+        assert_eq!(scene.warnings, [""; 0]);
+        assert_eq!(scene.materials[0].haze, None);
+        scene.materials[0].retroreflection
+    };
+    assert_eq!(share(""), Interval::point(0.0));
+    assert_eq!(share("'retroreflectionFactor': 0.75"), Interval::point(0.75));
+    // Red is from 0.2 to 0.4, and not decoded from sRGB.
+    let textured = share("'retroreflectionFactor': 0.5, 'retroreflectionTexture': {'index': 0}");
+    assert_close(Roughness::Isotropic(textured), [0.1, 0.2], [0.1, 0.2]);
+    assert_eq!(share("'retroreflectionTexture': {'index': 0}"), Interval::point(0.0));
+}

@@ -2,6 +2,7 @@
 
 mod bsdfs;
 mod documents;
+mod haze;
 mod models;
 
 use std::fs;

@@ -2,8 +2,8 @@
 
 use std::array::from_fn;
 
-use microfacet_baker::scene::{Reflectance, Roughness};
-use microfacet_tables::Interval;
+use microfacet_baker::scene::{Reflectance, Roughness, SceneError};
+use microfacet_tables::{Interval, MaterialEntry};
 
 use super::Importer;
 use super::object::Object;
@@ -15,6 +15,7 @@ const ANISOTROPY: &str = "KHR_materials_anisotropy";
 const CLEARCOAT: &str = "KHR_materials_clearcoat";
 const GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
 const METALLIC: &str = "pbrMetallicRoughness";
+const RETROREFLECTION: &str = "KHR_materials_retroreflection";
 const SPECULAR: &str = "KHR_materials_specular";
 
 impl<'a> Importer<'a> {
@@ -83,11 +84,35 @@ impl<'a> Importer<'a> {
             };
             Roughness::anisotropic(along, alpha)
         };
-        // The place is the whole file, so the message names the material.
-        let fresnel = fresnel(material, extensions)
-            .map_err(|why| self.place.invalid(format!("material \"{name}\": {}", why.kind)));
+        let fresnel = fresnel(material, extensions).map_err(|why| self.of_material(name, why));
         let fresnel = self.builder.without_fresnel(fresnel, None)?;
-        self.builder.add(name, self.place, used, Lobe::ggx(None, roughness, fresnel))
+        let retroreflection = self.retroreflection(name, extensions)?;
+        let lobe = Lobe { retroreflection, ..Lobe::ggx(None, roughness, fresnel) };
+        self.builder.add(name, self.place, used, lobe)
+    }
+
+    /// The share of what the base reflects that goes back; none with a warning if it is impossible.
+    fn retroreflection(&mut self, name: &str, extensions: &Object<'a>) -> Result<Interval> {
+        const NONE: Interval = MaterialEntry::SPECULAR;
+        let excluded = extensions.members.contains_key(GLOSSINESS);
+        let read = extensions.object(RETROREFLECTION).and_then(|extension| match extension {
+            None => Ok(NONE),
+            Some(_) if excluded => {
+                let why = format!("{RETROREFLECTION} must not be used with {GLOSSINESS}");
+                Err(extensions.invalid(why))
+            }
+            Some(extension) => {
+                let texture = ("retroreflectionTexture", Channel::Red);
+                self.factor(&extension, ("retroreflectionFactor", 0.0), texture)
+            }
+        });
+        let read = read.map_err(|why| self.of_material(name, why));
+        self.builder.or_warn(read, (NONE, "the lobe is read without it"))
+    }
+
+    /// An error with the name of the material, since its place is the whole file.
+    fn of_material(&self, name: &str, why: SceneError) -> SceneError {
+        self.place.invalid(format!("material \"{name}\": {}", why.kind))
     }
 
     /// Adds the lobe of a clearcoat, unless its factor is 0.

@@ -1,6 +1,6 @@
 //! glTF 2.0 scenes, `.gltf` and `.glb`.
 //!
-//! Conventions, from the [specification][spec] (3.9, appendix B) and its ratified extensions:
+//! Conventions, from the [specification][spec] (3.9, appendix B) and its extensions:
 //!
 //! - The specular lobe of every material is GGX (γ = 2) with σ = α = r², where r is
 //!   `roughnessFactor` (default 1) times the green channel of `metallicRoughnessTexture`.
@@ -11,6 +11,9 @@
 //! - `KHR_materials_transmission` and `KHR_materials_volume` transmit through the same lobe.
 //! - `KHR_materials_pbrSpecularGlossiness` (archived): r = 1 − glossiness, with the glossiness in
 //!   the opacity channel of its texture.
+//! - `KHR_materials_retroreflection` ([draft][retro]): of what the base reflects the share
+//!   `retroreflectionFactor` (default 0) times the red channel of its texture goes back; what is
+//!   transmitted and the clearcoat are as without.
 //! - The reflectance is Schlick's with F90 = 1, for red, green and blue: F0 goes from the
 //!   dielectric's to the base colour with `metallicFactor` (B.2). The dielectric's F0 is
 //!   ((ior − 1)/(ior + 1))² with `KHR_materials_ior` (default 1.5), times `specularColorFactor` of
@@ -29,6 +32,7 @@
 //! - G2 is left to the renderer: appendix B and the anisotropy extension show one expression each.
 //!
 //! [spec]: https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html
+//! [retro]: https://github.com/KhronosGroup/glTF/pull/2610
 
 mod image;
 mod material;

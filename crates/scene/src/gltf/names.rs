@@ -7,7 +7,7 @@ use crate::limits::Budget;
 
 /// Members of a material (under no name) and of objects in it: those that are read, and then those
 /// that leave every lobe as it is.
-const NAMES: [Row; 9] = [
+const NAMES: [Row; 10] = [
     (
         "",
         "pbrMetallicRoughness extensions name normalTexture occlusionTexture emissiveTexture \
@@ -20,8 +20,9 @@ const NAMES: [Row; 9] = [
     (
         "extensions",
         "KHR_materials_anisotropy KHR_materials_clearcoat KHR_materials_ior \
-         KHR_materials_iridescence KHR_materials_pbrSpecularGlossiness KHR_materials_sheen \
-         KHR_materials_specular KHR_materials_transmission KHR_materials_unlit \
+         KHR_materials_iridescence KHR_materials_pbrSpecularGlossiness \
+         KHR_materials_retroreflection KHR_materials_sheen KHR_materials_specular \
+         KHR_materials_transmission KHR_materials_unlit \
          ADOBE_materials_clearcoat_tint KHR_materials_diffuse_roughness \
          KHR_materials_diffuse_transmission KHR_materials_dispersion \
          KHR_materials_emissive_strength KHR_materials_volume KHR_materials_volume_scatter \
@@ -43,6 +44,7 @@ const NAMES: [Row; 9] = [
         "KHR_materials_pbrSpecularGlossiness",
         "specularFactor glossinessFactor specularGlossinessTexture diffuseFactor diffuseTexture",
     ),
+    ("KHR_materials_retroreflection", "retroreflectionFactor retroreflectionTexture"),
     (
         "KHR_materials_specular",
         "specularFactor specularTexture specularColorFactor specularColorTexture",

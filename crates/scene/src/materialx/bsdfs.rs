@@ -1,7 +1,7 @@
 //! The lobes of a surface: of one shading model, or of the BSDF nodes of a graph (`pbrlib`).
 
 use microfacet_baker::scene::{Reflectance, Roughness, SceneError};
-use microfacet_tables::Interval;
+use microfacet_tables::{Interval, MaterialEntry};
 
 use super::Reader;
 use super::connect::named;
@@ -36,17 +36,19 @@ impl<'a> Reader<'a> {
             true => name.to_owned(),
             false => format!("{name}.{}", named(node)),
         };
-        let mut lobes: Vec<Lobe> = Vec::new();
+        let mut lobes: Vec<Part> = Vec::new();
         let mut fabric = parts.fabric.then_some("sheen");
         let mut failed = !parts.broken.is_empty();
         for (at, film) in parts.microfacets {
             let node = at.node;
-            match self.microfacets(at, film) {
-                Ok(model) => {
+            let model = self.microfacets(at, film);
+            match model.and_then(|model| Ok((model, self.reflects(at)?))) {
+                Ok((model, reflects)) => {
                     // An interface that reflects and transmits is one lobe, and may be two nodes.
                     for lobe in model.lobes {
-                        let mut near = lobes.iter().rev().take(MAX_COMPARED);
-                        if !near.any(|other| is_same(other, &lobe)) {
+                        let lobe = Part { lobe, reflects };
+                        let mut near = lobes.iter_mut().rev().take(MAX_COMPARED);
+                        if !near.any(|other| other.absorbs(&lobe)) {
                             lobes.push(lobe);
                         }
                     }
@@ -71,10 +73,10 @@ impl<'a> Reader<'a> {
             self.builder.not_understood(&part(node), &node.tag, &node.place, reason)?;
         }
         let has_lobes = !lobes.is_empty();
-        if let [lobe] = &mut lobes[..] {
+        if let [Part { lobe, .. }] = &mut lobes[..] {
             lobe.name = lobe.name.filter(|name| !BSDF_LOBES.contains(name));
         }
-        for lobe in lobes {
+        for Part { lobe, .. } in lobes {
             self.builder.add(name, place, used, lobe)?;
         }
         if !has_lobes && !failed && parts.unknown.is_empty() {
@@ -107,11 +109,6 @@ impl<'a> Reader<'a> {
                 .place
                 .invalid(format!("the distribution \"{name}\" is not known; MaterialX has ggx")));
         }
-        if let Some(retro) = self.index.given(at.node, "retroreflective")
-            && retro.attribute("value") != Some("false")
-        {
-            self.builder.warn(&retro.place, "retroreflective is not read; the lobe is without it");
-        }
         let roughness = self.alpha(at)?;
         let film = self.film(at, "thinfilm_thickness")? || film;
         let (name, fresnel) = match &at.node.tag[..] {
@@ -133,7 +130,34 @@ impl<'a> Reader<'a> {
             }
         };
         let fresnel: Option<Reflectance> = fresnel.filter(|_| !film);
-        Ok(Model { lobes: vec![Lobe::ggx(Some(name), roughness, fresnel)], ..Model::default() })
+        let retroreflection = self.retroreflective(at)?;
+        let lobe = Lobe { retroreflection, ..Lobe::ggx(Some(name), roughness, fresnel) };
+        Ok(Model { lobes: vec![lobe], ..Model::default() })
+    }
+
+    /// Whether a node reflects, which a BSDF in the scatter mode T does not.
+    fn reflects(&self, at: At<'a>) -> Result<bool> {
+        let mode = self.index.given(at.node, "scatter_mode");
+        Ok(mode.map_or(Ok(None), |mode| self.said(mode, at.scope))? != Some("T"))
+    }
+
+    /// The share of what a BSDF reflects that goes back: all or nothing, by "retroreflective".
+    fn retroreflective(&mut self, at: At<'a>) -> Result<Interval> {
+        const NONE: Interval = MaterialEntry::SPECULAR;
+        let Some(input) = self.index.given(at.node, "retroreflective") else { return Ok(NONE) };
+        if !self.reflects(at)? {
+            return Ok(NONE);
+        }
+        let read = self.said(input, at.scope).and_then(|said| match said {
+            Some("true") => Ok(Interval::point(1.0)),
+            Some("false") => Ok(NONE),
+            said => {
+                let said = said.map_or("computed by a node".into(), |said| format!("\"{said}\""));
+                let why = format!("retroreflective must be true or false, not {said}");
+                Err(input.place.invalid(why))
+            }
+        });
+        self.builder.or_warn(read, (NONE, "the lobe is read without it"))
     }
 
     /// The input "roughness" of a BSDF, which is α along both axes.
@@ -199,6 +223,26 @@ impl<'a> Reader<'a> {
 /// Names of the lobes of microfacet BSDFs, where a material has several.
 const BSDF_LOBES: [&str; 3] = ["conductor", "dielectric", "schlick"];
 
-fn is_same(a: &Lobe, b: &Lobe) -> bool {
-    a.name == b.name && a.roughness == b.roughness && a.fresnel == b.fresnel
+/// A lobe of a surface, and whether it reflects or only transmits.
+struct Part {
+    lobe: Lobe,
+    reflects: bool,
+}
+
+impl Part {
+    /// Whether `other` is a part of the same interface; if so, this one stands for both. What is
+    /// transmitted has no retroreflection, so that this is that of a part that reflects.
+    fn absorbs(&mut self, other: &Self) -> bool {
+        let (a, b) = (&self.lobe, &other.lobe);
+        let is_same = a.name == b.name
+            && a.roughness == b.roughness
+            && a.haze == b.haze
+            && a.fresnel == b.fresnel
+            && (a.retroreflection == b.retroreflection || !self.reflects || !other.reflects);
+        if is_same && !self.reflects {
+            self.lobe.retroreflection = other.lobe.retroreflection;
+            self.reflects = other.reflects;
+        }
+        is_same
+    }
 }

@@ -87,6 +87,19 @@ impl<'a> Reader<'a> {
             .ok_or_else(|| undefined(input, "output", name))
     }
 
+    /// What a uniform input says, through interfaces; `None` if a node computes it.
+    pub(super) fn said(&self, input: &'a Element, scope: Scope<'a>) -> Result<Option<&'a str>> {
+        let mut end = At::new(input, scope);
+        for _ in 0..MAX_STEPS {
+            match self.target(end.node, end.scope)? {
+                None => return Ok(end.node.attribute("value")),
+                Some(next) if is_end(end.node, next.node) => end = next,
+                Some(_) => return Ok(None),
+            }
+        }
+        Err(too_long(input))
+    }
+
     /// The node that an input or output is connected to; `None` if it has a value of its own.
     pub(super) fn resolve(
         &self,
@@ -101,9 +114,7 @@ impl<'a> Reader<'a> {
             }
             end = next;
         }
-        Err(input.place.invalid(format!(
-            "the connection passes more than {MAX_STEPS} outputs and interfaces; is it a circle?"
-        )))
+        Err(too_long(input))
     }
 
     /// The scope of the graph that implements a node, if the document defines the node; the same
@@ -227,6 +238,12 @@ pub(super) fn place(channel: Channel) -> usize {
         Channel::Blue => 2,
         Channel::Alpha => 3,
     }
+}
+
+fn too_long(input: &Element) -> SceneError {
+    input.place.invalid(format!(
+        "the connection passes more than {MAX_STEPS} outputs and interfaces; is it a circle?"
+    ))
 }
 
 fn undefined(input: &Element, what: &str, name: &str) -> SceneError {

@@ -150,16 +150,6 @@ impl<'a> Reader<'a> {
         self.builder.without_fresnel(film, true)
     }
 
-    /// Warns of a weight that is not read, unless it is 0.
-    pub(super) fn without(&mut self, at: At<'a>, name: &'static str) -> Result<()> {
-        let weight = self.greatest(at, name, 0.0);
-        if self.builder.or_warn(weight, (0.0, "it is not read"))? > 0.0 {
-            self.builder
-                .warn(&at.node.place, format!("{name} is not read; the lobe is without it"));
-        }
-        Ok(())
-    }
-
     /// The greatest value of an input, of any channel.
     pub(super) fn greatest(&mut self, at: At<'a>, name: &'static str, default: f64) -> Result<f64> {
         let Some(input) = self.index.given(at.node, name) else { return Ok(default) };

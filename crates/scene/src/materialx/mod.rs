@@ -33,16 +33,22 @@
 //! - `transmission_extra_roughness` gives transmission a lobe of its own. What `UsdPreviewSurface`
 //!   and `disney_principled` transmit is smooth, and has none.
 //! - Sheen and fuzz have distributions of their own. G2 is left open.
-//! - Defaults are those of the node definitions: `standard_surface` 1.0.1, `open_pbr_surface` 1.1,
-//!   `gltf_pbr` 2.0.1, `UsdPreviewSurface` 2.6.
+//! - Defaults are those of the node definitions: `standard_surface` 1.0.1, `open_pbr_surface` 1.1
+//!   with the additions of 1.2, `gltf_pbr` 2.0.1, `UsdPreviewSurface` 2.6.
 //! - BSDFs are followed through `surface`, `layer`, `mix`, `add` and `multiply`, and through the
 //!   graphs of nodes that the document defines itself (`nodedef`); not through weights of 0.
 //! - A shader appears once for each `surfacematerial` that uses it, under that name, or else under
 //!   its own. A material is used if a `materialassign` names it, or if the document has none.
 //! - An input with an `output` alone is connected to that output of the document. Inputs that the
 //!   definition of their node does not have are warned of.
-//! - `specular_haze` and `specular_retroreflectivity` of OpenPBR 1.2, and `retroreflective` of BSDF
-//!   nodes, are not read; where they are not 0 a warning says so.
+//! - The base of `open_pbr_surface` may have a second lobe of weight `specular_haze`, of the same
+//!   anisotropy and the roughness r + (1 − r) ξ with ξ = `specular_haze_spread` (sections "Specular
+//!   haze" and "Metallic Base" of the [draft of OpenPBR 1.2][draft]). A coat roughens that in turn,
+//!   as it does r (`effective_haze_roughness` in `reference/open_pbr_surface.mtlx` there).
+//! - `specular_retroreflectivity` (section "Retroreflectivity") is the share of what the base
+//!   reflects, in core and haze, that goes back; `retroreflective` of a BSDF node makes it all.
+//!   What is transmitted does not: in `scatter_mode` T it says nothing (MaterialX PBR
+//!   specification, "Reflectance Models").
 //! - An image is read in its first channel if it is a float, else in the channel that is taken from
 //!   it; it is decoded from sRGB if it is a colour in the colour space `srgb_texture`. A file with
 //!   `<UDIM>` or `<UVTILE>` in its name is all the tiles that exist.
@@ -51,6 +57,7 @@
 //!
 //! [materialx]: https://github.com/AcademySoftwareFoundation/MaterialX/tree/main/libraries
 //! [openpbr]: https://academysoftwarefoundation.github.io/OpenPBR/
+//! [draft]: https://github.com/AcademySoftwareFoundation/OpenPBR/tree/dev_1.2
 
 mod bsdfs;
 mod connect;
@@ -60,6 +67,7 @@ mod graph;
 mod image;
 mod index;
 mod inputs;
+mod open_pbr;
 mod parts;
 mod shaders;
 

@@ -25,14 +25,19 @@ pub(super) struct Model {
 
 impl Model {
     /// Adds a lobe; an impossible roughness leaves out this lobe alone.
-    fn push(
+    pub(super) fn push(
         &mut self,
         name: Option<&'static str>,
         roughness: Result<Roughness>,
         fresnel: Option<Reflectance>,
     ) {
-        match roughness {
-            Ok(roughness) => self.lobes.push(Lobe::ggx(name, roughness, fresnel)),
+        self.push_lobe(name, roughness.map(|roughness| Lobe::ggx(name, roughness, fresnel)));
+    }
+
+    /// Adds a lobe that was read; what is impossible in it leaves out this lobe alone.
+    pub(super) fn push_lobe(&mut self, name: Option<&'static str>, lobe: Result<Lobe>) {
+        match lobe {
+            Ok(lobe) => self.lobes.push(lobe),
             Err(error) => self.failed.push((name, error)),
         }
     }
@@ -68,7 +73,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The roughness and the anisotropy of a lobe.
-    fn pair(
+    pub(super) fn pair(
         &mut self,
         at: At<'a>,
         (roughness, default): (&'static str, f64),
@@ -118,61 +123,6 @@ impl<'a> Reader<'a> {
             let fresnel = self.dielectric(at, "coat_IOR", 1.5)?;
             let coat = self.pair(at, ("coat_roughness", 0.1), "coat_anisotropy");
             model.push(Some("coat"), coat.map(|(r, a)| stretched(r, a)), fresnel);
-        }
-        Ok(model)
-    }
-
-    fn open_pbr_surface(&mut self, at: At<'a>) -> Result<Model> {
-        let alpha = |roughness: Interval, anisotropy: Interval| {
-            let stretch = |a: f64| (2.0 / (1.0 + (1.0 - a) * (1.0 - a))).sqrt();
-            let along = anisotropy.map_rising(stretch);
-            let across = anisotropy.map_falling(|a| (1.0 - a) * stretch(a));
-            axes(roughness, anisotropy, [along.min, along.max], [across.min, across.max])
-        };
-        let base = self.pair(at, ("specular_roughness", 0.3), "specular_roughness_anisotropy");
-        let (metalness, metal) = self.metal(at, "base_metalness", 0.0)?;
-        let transmission = self.unit(at, "transmission_weight", 0.0)?;
-        let specular = self.input(at, "specular_weight", 1.0)?;
-        let coat = self.unit(at, "coat_weight", 0.0)?;
-        let coat_roughness = self.unit(at, "coat_roughness", 0.0)?;
-        let under_coat = |r: f64, coat_roughness: f64, coat: f64| {
-            let fourth = |x: f64| x * x * x * x;
-            let sum = fourth(r) + 2.0 * fourth(coat_roughness);
-            r + (sum.min(1.0).sqrt().sqrt() - r) * coat
-        };
-        let film = self.film(at, "thin_film_weight")?;
-        for weight in ["specular_haze", "specular_retroreflectivity"] {
-            self.without(at, weight)?;
-        }
-
-        let mut model = Model::default();
-        // `specular_weight` weights the metal's lobe; of the dielectric it only changes the index.
-        if specular.max > 0.0 || transmission.max > 0.0 && metalness.min < 1.0 {
-            let fresnel = match metal {
-                _ if film => None,
-                // Under a coat the index is relative to the coat's.
-                Metal::None if coat.max > 0.0 => None,
-                Metal::None => self.weighted_dielectric(at, "specular_ior", 1.5, specular)?,
-                Metal::All => {
-                    let f0 = self.product(at, "base_color", 0.8, "base_weight", 1.0)?;
-                    let edge = self.colour(at, "specular_color", [1.0; 3])?;
-                    f0.filter(|_| edge == Some([1.0; 3])).and_then(schlick)
-                }
-                Metal::Some => None,
-            };
-            let roughness = base.map(|(r, anisotropy)| {
-                let r = Interval {
-                    min: under_coat(r.min, coat_roughness.min, coat.min),
-                    max: under_coat(r.max, coat_roughness.max, coat.max),
-                };
-                alpha(r, anisotropy)
-            });
-            model.push(None, roughness, fresnel);
-        }
-        if coat.max > 0.0 {
-            let fresnel = self.dielectric(at, "coat_ior", 1.6)?;
-            let anisotropy = self.unit(at, "coat_roughness_anisotropy", 0.0);
-            model.push(Some("coat"), anisotropy.map(|a| alpha(coat_roughness, a)), fresnel);
         }
         Ok(model)
     }
@@ -284,7 +234,7 @@ fn squared(roughness: Interval) -> Roughness {
 }
 
 /// The roughness along both axes: r² times a factor from `x` and from `y`, least and greatest.
-fn axes(r: Interval, anisotropy: Interval, x: [f64; 2], y: [f64; 2]) -> Roughness {
+pub(super) fn axes(r: Interval, anisotropy: Interval, x: [f64; 2], y: [f64; 2]) -> Roughness {
     if anisotropy.max == 0.0 {
         return Roughness::isotropic(r.map_rising(|r| r * r));
     }

@@ -72,7 +72,7 @@ impl<'a> Reader<'a> {
     fn lobes(&mut self, bsdf: &'a Element, name: &str, used: bool) -> Result<()> {
         let class = bsdf.required("type")?;
         let lobe = |reader: &mut Self, suffix, roughness, gamma, fresnel| {
-            let lobe = Lobe { name: suffix, roughness, gamma, fresnel };
+            let lobe = Lobe::new(suffix, roughness, gamma, fresnel);
             reader.builder.add(name, &bsdf.place, used, lobe)
         };
         let reason = match class {
