@@ -1,11 +1,16 @@
 //! Any of the BSDFs, and the BSDF of a recipe's material by name.
 
+use alloc::boxed::Box;
+
 use microfacet_tables::Reflectance;
 
 use super::bind::StandIn;
 use super::compensation::Compensation;
 use super::settings::BsdfSettings;
-use super::{Bsdf, BsdfSample, Conductor, ConductorFresnel, Dielectric, Plastic, Transport};
+use super::{
+    Bsdf, BsdfSample, Conductor, ConductorFresnel, Dielectric, Haze, Plastic, Retroreflective,
+    Transport,
+};
 use crate::bind_error::BindError;
 use crate::material::Lobe;
 use crate::tables::Tables;
@@ -22,6 +27,10 @@ pub enum AnyBsdf {
     Dielectric(Dielectric<Lobe>),
     /// A dielectric coat over a diffuse base.
     Plastic(Plastic<Lobe>),
+    /// A core with haze around it.
+    Haze(Box<Haze<AnyBsdf>>),
+    /// A BSDF that sends a share of the light back.
+    Retroreflective(Box<Retroreflective<AnyBsdf>>),
 }
 
 macro_rules! from {
@@ -36,12 +45,32 @@ macro_rules! from {
 
 from!(Conductor, Dielectric, Plastic);
 
+impl<A: Into<Self>, B: Into<Self>> From<Haze<A, B>> for AnyBsdf {
+    fn from(bsdf: Haze<A, B>) -> Self {
+        Self::Haze(Box::new(bsdf.map(A::into, B::into)))
+    }
+}
+
+impl<B: Into<Self>> From<Retroreflective<B>> for AnyBsdf {
+    fn from(bsdf: Retroreflective<B>) -> Self {
+        Self::Retroreflective(Box::new(bsdf.map(B::into)))
+    }
+}
+
 macro_rules! each {
     ($any:ident, $one:ident => $call:expr) => {
         match $any {
             AnyBsdf::Conductor($one) => $call,
             AnyBsdf::Dielectric($one) => $call,
             AnyBsdf::Plastic($one) => $call,
+            AnyBsdf::Haze($one) => {
+                let $one = &**$one;
+                $call
+            }
+            AnyBsdf::Retroreflective($one) => {
+                let $one = &**$one;
+                $call
+            }
         }
     };
 }
@@ -109,6 +138,10 @@ impl Bsdf for AnyBsdf {
 
     fn transmits(&self) -> bool {
         each!(self, bsdf => Bsdf::<3>::transmits(bsdf))
+    }
+
+    fn is_symmetric(&self) -> bool {
+        each!(self, bsdf => Bsdf::<3>::is_symmetric(bsdf))
     }
 }
 
