@@ -58,6 +58,8 @@ fn specimen(surface: Surface) -> Specimen {
         surface,
         masking: Masking::HeightCorrelated,
         compensation: Compensation::None,
+        haze: None,
+        back: 0.0,
     }
 }
 
