@@ -1,4 +1,4 @@
-"""A reader of microfacet tables, format version 4, after the core of docs/format.md.
+"""A reader of microfacet tables, format versions 4 and 5, after the core of docs/format.md.
 
 Directions are three numbers, a unit vector with n = +z. All arithmetic is in double precision.
 """
@@ -22,8 +22,10 @@ class Tables:
             self.document = json.loads(header["__metadata__"]["microfacet"])
         except (ValueError, KeyError, TypeError):
             raise ValueError(f"{path}: not a table set; microfacet-bake writes them") from None
-        if (self.document["format"], self.document["version"]) != ("microfacet-tables", 4):
-            raise ValueError(f"{path}: not microfacet tables of version 4")
+        # They differ in what materials state, not in tables.
+        known = [("microfacet-tables", version) for version in (4, 5)]
+        if (self.document["format"], self.document["version"]) not in known:
+            raise ValueError(f"{path}: not microfacet tables of version 4 or 5")
         prefix = rb'\"checksum\":\"'
         digits = data.index(prefix, 8, start) + len(prefix)
         crc = zlib.crc32(data[:digits] + b"00000000" + data[digits + 8 :])

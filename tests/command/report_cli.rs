@@ -7,7 +7,7 @@ use tempfile::TempDir;
 
 use crate::common::{names, ok, refused, run};
 
-use microfacet_tables::VERSION;
+use microfacet_tables::{OLDEST_VERSION, VERSION};
 
 /// A folder with a set that is quick to draw: a closed form, without tables.
 fn workshop() -> TempDir {
@@ -44,11 +44,11 @@ fn sets_of_other_versions_and_damaged_ones_are_refused() {
     let file = at.join("set.safetensors");
     // The document is text within the head of the file, which keeps its length.
     let place = |what: &str| set.windows(what.len()).position(|at| at == what.as_bytes()).unwrap();
-    let version = format!(r#"\"version\":{VERSION}"#);
+    let version = format!(r#"\"version\":{OLDEST_VERSION}"#);
     let mut newer = set.clone();
-    newer[place(&version) + version.len() - 1] += 1;
+    newer[place(&version) + version.len() - 1] += (VERSION + 1 - OLDEST_VERSION) as u8;
     fs::write(&file, &newer).unwrap();
-    let why = format!("version {} (this reader knows {VERSION})", VERSION + 1);
+    let why = format!("version {} (this reader knows {OLDEST_VERSION} to {VERSION})", VERSION + 1);
     refuses(at, &["set.safetensors"], &["set.safetensors", &why, "bake again"]);
     fs::write(&file, &set[..set.len() - 1]).unwrap();
     refuses(at, &["set.safetensors"], &["set.safetensors", "not a valid table set"]);

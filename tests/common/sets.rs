@@ -43,7 +43,14 @@ pub(crate) fn outside(label: &str, marginal: &Marginal) -> MaterialEntry {
     let sigma = Roughness::Isotropic(Interval::point(marginal.sigma()));
     let family = LobeSpec::family(sigma, Interval::point(f64::INFINITY));
     let lobe = LobeSpec { distribution: Some(label.into()), ..family };
-    MaterialEntry { name: "it".into(), lobe, masking: None, fresnel: None }
+    MaterialEntry {
+        name: "it".into(),
+        lobe,
+        haze: None,
+        retroreflection: MaterialEntry::SPECULAR,
+        masking: None,
+        fresnel: None,
+    }
 }
 
 /// A set of tables that names a material, or none.

@@ -6,7 +6,7 @@ use microfacet_baker::scene::{
     Format, LobeSpec, Masking, Material, Origin, Place, Reflectance, Roughness, Scene,
 };
 use microfacet_sampler::Metal;
-use microfacet_tables::Interval;
+use microfacet_tables::{Interval, MaterialEntry};
 use proptest::prelude::*;
 
 use crate::{Folder, anisotropic, isotropic, load, named};
@@ -255,6 +255,8 @@ fn material() -> impl Strategy<Value = Material> {
     parts.prop_map(|(name, roughness, gamma, fresnel, masking)| Material {
         name,
         lobe: LobeSpec::family(roughness, gamma),
+        haze: None,
+        retroreflection: MaterialEntry::SPECULAR,
         fresnel,
         masking,
         origin: Origin {

@@ -8,7 +8,7 @@ use std::sync::{Arc, LazyLock};
 use etcetera::BaseStrategy;
 use sha2::{Digest, Sha256};
 
-use microfacet_tables::{Mapping, Provenance, Table, VERSION, encode};
+use microfacet_tables::{Mapping, OLDEST_VERSION, Provenance, Table, encode};
 
 use crate::bake::NUMERICS;
 use crate::store::{self, in_folder, make_folder, remove_abandoned, replace};
@@ -137,7 +137,7 @@ pub(crate) fn sha256(text: &str) -> String {
 
 pub(crate) fn versions() -> String {
     let program = env!("CARGO_PKG_VERSION");
-    format!("format {VERSION}, numerics {NUMERICS}, program {program}")
+    format!("format {OLDEST_VERSION}, numerics {NUMERICS}, program {program}")
 }
 
 #[cfg(test)]

@@ -100,7 +100,8 @@ impl Tables {
                 kept.push(self.entry(name)?.clone());
             }
         }
-        let lobes: Vec<LobeSpec> = kept.iter().map(|entry| entry.lobe.tabulated()).collect();
+        let lobes = kept.iter().flat_map(MaterialEntry::lobes);
+        let lobes: Vec<LobeSpec> = lobes.map(LobeSpec::tabulated).collect();
         let fallback = self.tables.split_off(self.own);
         self.tables.retain(|Table { subject, .. }| {
             subject.lobe.is_family() || lobes.iter().any(|lobe| subject.lobe.contains(lobe))

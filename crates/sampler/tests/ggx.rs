@@ -92,6 +92,8 @@ fn without_tables() -> Tables {
             Roughness::Anisotropic { x: Interval::point(0.2), y: [0.1, 0.3].into() },
             Interval::point(2.0),
         ),
+        haze: None,
+        retroreflection: MaterialEntry::SPECULAR,
         masking: None,
         fresnel: None,
     };

@@ -9,8 +9,8 @@ use microfacet_sampler::{Ggx, Lobe, Masking, MaterialError, MicrofacetDistributi
 use microfacet_tables::axis::{HalfTangent, Rational};
 use microfacet_tables::{
     Axis, Certificate, Errors, Interpolation, Interval, Kind, LoadError, LobeSpec, Mapping,
-    MaterialEntry, Precision, Provenance, Quantity, Reflectance, Roughness, Side, Subject, Table,
-    VERSION, encode, seal,
+    MaterialEntry, OLDEST_VERSION, Precision, Provenance, Quantity, Reflectance, Roughness, Side,
+    Subject, Table, VERSION, encode, seal,
 };
 
 fn axis(name: &str, mapping: Mapping, interpolation: Interpolation, nodes: &[f64]) -> Axis {
@@ -67,7 +67,14 @@ fn materials() -> Vec<MaterialEntry> {
         let [x, y] = sigma.map(Interval::from);
         let gamma = Interval::from(s).map_falling(gamma_of_s);
         let lobe = LobeSpec { theta, ..LobeSpec::family(Roughness::anisotropic(x, y), gamma) };
-        MaterialEntry { name: name.into(), lobe, masking: None, fresnel: Some(fresnel) }
+        MaterialEntry {
+            name: name.into(),
+            lobe,
+            haze: None,
+            retroreflection: MaterialEntry::SPECULAR,
+            masking: None,
+            fresnel: Some(fresnel),
+        }
     };
     let [tilted, metal] = [[[0.25; 2], [0.375; 2]], [[0.0, 0.5], [0.125, 0.625]]];
     let theta = Some([0.1, -0.2, 0.5]);
@@ -252,12 +259,12 @@ fn halves_of_numbers_that_a_kind_does_not_have_are_refused() {
 #[test]
 fn a_newer_version_says_so() {
     // With a key that this version does not have.
-    let now = format!(r#"\"version\":{VERSION}"#);
+    let now = format!(r#"\"version\":{OLDEST_VERSION}"#);
     let newer = forge(&now, &format!(r#"\"version\":{},\"weather\":\"fine\""#, VERSION + 1));
     let Err(LoadError::Unsupported(why)) = Tables::from_bytes(&newer) else { panic!("loaded") };
     assert!(
         why.contains(&format!("version {}", VERSION + 1))
-            && why.contains(&format!("knows {VERSION}")),
+            && why.contains(&format!("knows {OLDEST_VERSION} to {VERSION}")),
         "{why}"
     );
 }

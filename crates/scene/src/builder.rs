@@ -8,7 +8,7 @@ use microfacet_baker::scene::{
     Format, Ignored, LobeSpec, MOST_CANDIDATES, Masking, Material, Names, Origin, Place,
     Reflectance, Roughness, Scene, SceneError, SceneErrorKind, did_you_mean,
 };
-use microfacet_tables::Interval;
+use microfacet_tables::{Interval, MaterialEntry};
 
 use crate::Result;
 use crate::limits::{self, Budget};
@@ -117,6 +117,8 @@ impl Builder {
         let material = Material {
             name: self.names.unique(name),
             lobe: LobeSpec::family(lobe.roughness, lobe.gamma),
+            haze: None,
+            retroreflection: MaterialEntry::SPECULAR,
             fresnel: lobe.fresnel,
             masking: match self.format {
                 Format::Pbrt => Some(Masking::HeightCorrelated),

@@ -8,7 +8,7 @@
 //! | [`encode`], [`decode`] | a set to and from the bytes of a safetensors file; `docs/format.md` specifies it |
 //! | [`describe`], [`reassemble`] | the description of one table, for another container |
 //! | [`Provenance`], [`MaterialEntry`] | the origin of a set, and its materials |
-//! | [`LobeSpec`] | a lobe, as recipes, plans and files state it |
+//! | [`LobeSpec`], [`Haze`] | a lobe, and a second one with its weight, as recipes, plans and files state them |
 //! | [`Index`] | which of the numbered sets of a library holds a material |
 //!
 //! `microfacet-baker`, which bakes sets, and `microfacet-sampler`, which looks them up, share this
@@ -44,10 +44,10 @@ mod interval;
 pub use axis::{Axis, Interpolation, Mapping, Weights};
 pub use error::{LoadError, Range};
 pub use format::{
-    Certificate, Channels, Coordinate, Errors, FORMAT, Index, IndexedSet, Kind, LobeForm, LobeSpec,
-    MaterialEntry, Precision, Provenance, Quantity, Reflectance, Roughness, SAME, Side, Subject,
-    Table, VERSION, crc32, decode, describe, encode, joined_name, reassemble, seal, seal_document,
-    stated_axes, stated_tables,
+    Certificate, Channels, Coordinate, Errors, FORMAT, Haze, Index, IndexedSet, Kind, LobeForm,
+    LobeSpec, MaterialEntry, OLDEST_VERSION, Precision, Provenance, Quantity, Reflectance,
+    Roughness, SAME, Side, Subject, Table, VERSION, crc32, decode, describe, encode, joined_name,
+    reassemble, seal, seal_document, stated_axes, stated_tables,
 };
 pub use interval::Interval;
 

@@ -7,10 +7,10 @@ use std::path::Path;
 use super::Place;
 use crate::distribution::Distribution;
 
-use microfacet_tables::MaterialEntry;
+use microfacet_tables::{Interval, MaterialEntry};
 
 pub use microfacet_sampler::Masking;
-pub use microfacet_tables::{LobeSpec, Reflectance, Roughness};
+pub use microfacet_tables::{Haze, LobeSpec, Reflectance, Roughness};
 
 /// The format in which a material was described.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -69,15 +69,20 @@ pub struct Origin {
     pub lobe: Option<&'static str>,
 }
 
-/// One microfacet lobe that a scene asks for.
+/// One microfacet surface that a scene asks for: one lobe, or a core and a haze.
 ///
 /// A layered material of the scene appears as one `Material` for each rough interface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// The name, unique in its scene; a further lobe is named "material.lobe".
     pub name: String,
-    /// The lobe.
+    /// The lobe; the core, if it has a haze.
     pub lobe: LobeSpec<Distribution>,
+    /// The second lobe, if it has one.
+    pub haze: Option<Haze<Distribution>>,
+    /// The share in [0, 1] of the reflected light that goes back to where it comes from;
+    /// [`MaterialEntry::SPECULAR`] if none does.
+    pub retroreflection: Interval,
     /// The facets' reflectance; `None` if the scene states none, or none that [`Reflectance`] has.
     pub fresnel: Option<Reflectance>,
     /// The form of G2 that the scene's renderer uses; `None` where the format leaves it open.
@@ -89,19 +94,32 @@ pub struct Material {
 }
 
 impl Material {
+    /// Its lobes: the core, then the haze if it has one.
+    pub fn lobes(&self) -> impl Iterator<Item = &LobeSpec<Distribution>> {
+        std::iter::once(&self.lobe).chain(self.haze.iter().map(|haze| &haze.lobe))
+    }
+
     /// The material as sets list it.
     #[must_use]
     pub fn entry(&self) -> MaterialEntry {
-        let Self { name, masking, fresnel, .. } = self;
-        let lobe = self.lobe.map(Distribution::label);
-        MaterialEntry { name: name.clone(), lobe, masking: *masking, fresnel: *fresnel }
+        let Self { name, masking, fresnel, retroreflection, .. } = self;
+        MaterialEntry {
+            name: name.clone(),
+            lobe: self.lobe.map(Distribution::label),
+            haze: self.haze.as_ref().map(|haze| haze.map(Distribution::label)),
+            retroreflection: *retroreflection,
+            masking: *masking,
+            fresnel: *fresnel,
+        }
     }
 
-    /// Whether both state the same lobe under the same name, wherever they were described.
+    /// Whether both state the same lobes under the same name, wherever they were described.
     #[must_use]
     pub fn asks_the_same(&self, other: &Self) -> bool {
         self.name == other.name
             && self.lobe == other.lobe
+            && self.haze == other.haze
+            && self.retroreflection == other.retroreflection
             && self.fresnel == other.fresnel
             && self.masking == other.masking
     }

@@ -16,7 +16,9 @@ pub use error::{
     did_you_mean_key,
 };
 pub use limits::Budget;
-pub use material::{Format, Ignored, LobeSpec, Masking, Material, Origin, Reflectance, Roughness};
+pub use material::{
+    Format, Haze, Ignored, LobeSpec, Masking, Material, Origin, Reflectance, Roughness,
+};
 pub use names::Names;
 
 /// The microfacet lobes of a scene.

@@ -6,8 +6,7 @@ use std::path::Path;
 use microfacet_baker::scene::{
     Format, LobeSpec, Masking, Material, Names, Origin, Place, Reflectance, Roughness, Scene,
 };
-use microfacet_tables::Interval;
-use microfacet_tables::SIGMA_MAX;
+use microfacet_tables::{Interval, MaterialEntry, SIGMA_MAX};
 
 use super::Fitted;
 
@@ -50,6 +49,8 @@ pub fn recipe<'a>(fits: impl IntoIterator<Item = (&'a str, &'a Fitted)>) -> Stri
                 Roughness::Isotropic(Interval::point(sigma)),
                 Interval::point(gamma),
             ),
+            haze: None,
+            retroreflection: MaterialEntry::SPECULAR,
             fresnel: tabulated.then_some(Reflectance::Schlick(fitted.f0)),
             masking: Some(Masking::Uncorrelated),
             origin: Origin {

@@ -4,6 +4,7 @@ use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
+use core::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
@@ -19,8 +20,12 @@ use crate::error::LoadError;
 
 /// The `format` entry of the document.
 pub const FORMAT: &str = "microfacet-tables";
-/// Version of the format that this crate writes, and the only one that it reads.
-pub const VERSION: u32 = 4;
+/// The newest version of the format. A set is written in the [oldest](OLDEST_VERSION) that has all
+/// that its materials state, so that readers which know that one read it.
+pub const VERSION: u32 = 5;
+/// The oldest version of the format that this crate reads, and the one of sets whose materials have
+/// one lobe each and no retroreflection.
+pub const OLDEST_VERSION: u32 = 4;
 /// Largest number of tables in a set, since a table of few values takes a kilobyte of memory too.
 const MOST_TABLES: usize = 1 << 16;
 
@@ -53,6 +58,12 @@ impl Provenance {
             sound.map_err(|why| invalid(format!("material `{name}`: {why}")))?;
         }
         Ok(())
+    }
+
+    /// The version of the format in which a set with these materials is written.
+    fn version(&self) -> u32 {
+        let versions = self.materials.iter().map(MaterialEntry::version);
+        versions.fold(OLDEST_VERSION, u32::max)
     }
 }
 
@@ -96,7 +107,7 @@ impl Document {
         let (axes, tables) = stacked(tables);
         Ok(Self {
             format: FORMAT.into(),
-            version: VERSION,
+            version: provenance.version(),
             checksum: checksum::NONE.into(),
             provenance: provenance.clone(),
             mappings,
@@ -113,6 +124,12 @@ impl Document {
         check_version(json)?;
         let document: Self = serde_json::from_str(json).map_err(invalid)?;
         document.provenance.check()?;
+        let (stated, needed) = (document.version, document.provenance.version());
+        if stated < needed {
+            return Err(invalid(format!(
+                "version {stated} of the format with a material of version {needed}"
+            )));
+        }
         let tables = document.tables.iter().map(Stack::len);
         let tables = tables.fold(0, usize::saturating_add);
         if tables > MOST_TABLES {
@@ -165,13 +182,20 @@ pub(super) fn check_version(json: &str) -> Result<(), LoadError> {
     if head.format != FORMAT {
         return Err(invalid(format!("format \"{}\" where \"{FORMAT}\" is expected", head.format)));
     }
-    if head.version != VERSION {
-        return Err(LoadError::Unsupported(format!(
-            "format version {} (this reader knows {VERSION}): update the reader or bake again",
-            head.version
-        )));
+    known(head.version, OLDEST_VERSION..=VERSION)
+}
+
+/// Refuses a version of the format that a reader of `versions` does not know.
+fn known(version: u32, versions: RangeInclusive<u32>) -> Result<(), LoadError> {
+    if versions.contains(&version) {
+        return Ok(());
     }
-    Ok(())
+    let (oldest, newest) = versions.into_inner();
+    let known =
+        if oldest == newest { format!("{oldest}") } else { format!("{oldest} to {newest}") };
+    Err(LoadError::Unsupported(format!(
+        "format version {version} (this reader knows {known}): update the reader or bake again"
+    )))
 }
 
 /// The JSON document that describes a set, with zeros for its checksum.
@@ -217,4 +241,47 @@ pub fn reassemble(
     let document = Document::from_json(json)?;
     let tables = document.tables(|_, _| values())?;
     Ok((document.provenance, tables))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn set_of(materials: &str) -> Provenance {
+        let materials = serde_json::from_str(materials).unwrap();
+        Provenance { materials, ..Provenance::default() }
+    }
+
+    #[test]
+    fn only_what_an_older_reader_does_not_know_is_written_in_a_newer_version() {
+        const PLAIN: &str = r#"{"name":"a","sigma":0.1,"gamma":2}"#;
+        const HAZE: &str = r#""haze":{"weight":0.5,"sigma":0.5,"gamma":2}"#;
+        for (keys, version) in [("", 4), (HAZE, 5), (r#""retroreflection":0.5"#, 5)] {
+            let comma = if keys.is_empty() { "" } else { "," };
+            let other = format!(r#"{{"name":"b","sigma":0.3,"gamma":3{comma}{keys}}}"#);
+            let set = set_of(&format!("[{PLAIN},{other}]"));
+            let json = describe(&set, &[]).unwrap();
+            assert!(json.contains(&format!("\"version\":{version},")), "{json}");
+            let (again, _) = reassemble(&json, || Ok(Vec::new())).unwrap();
+            assert_eq!(again, set);
+            // A reader of version 4 alone.
+            match known(version, 4..=4) {
+                Ok(()) => assert_eq!(version, 4),
+                Err(LoadError::Unsupported(why)) => assert_eq!(
+                    (version, &*why),
+                    (5, "format version 5 (this reader knows 4): update the reader or bake again")
+                ),
+                Err(why) => panic!("{why}"),
+            }
+            let newest = json.replace(&format!("\"version\":{version},"), "\"version\":5,");
+            assert_eq!(reassemble(&newest, || Ok(Vec::new())).unwrap().0, set);
+            let oldest = json.replace(&format!("\"version\":{version},"), "\"version\":4,");
+            assert_eq!(reassemble(&oldest, || Ok(Vec::new())).is_ok(), version == 4, "{oldest}");
+        }
+        assert_eq!(set_of("[]").version(), OLDEST_VERSION);
+        for version in [0, 3, 6, u32::MAX] {
+            let why = known(version, OLDEST_VERSION..=VERSION).unwrap_err().to_string();
+            assert!(why.contains("(this reader knows 4 to 5)"), "{why}");
+        }
+    }
 }

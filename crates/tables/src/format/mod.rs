@@ -4,6 +4,7 @@ mod certificate;
 mod checksum;
 mod container;
 mod document;
+mod haze;
 mod index;
 mod kind;
 mod lobe;
@@ -21,7 +22,10 @@ use alloc::string::String;
 pub use certificate::{Certificate, Coordinate, Errors, Quantity};
 pub use checksum::{crc32, seal, seal_document};
 pub use container::{decode, encode};
-pub use document::{FORMAT, Provenance, VERSION, describe, reassemble, stated_axes, stated_tables};
+pub use document::{
+    FORMAT, OLDEST_VERSION, Provenance, VERSION, describe, reassemble, stated_axes, stated_tables,
+};
+pub use haze::Haze;
 pub use index::{Index, IndexedSet};
 pub use kind::{Channels, Kind};
 pub use lobe::{LobeForm, LobeSpec, Roughness, SAME};

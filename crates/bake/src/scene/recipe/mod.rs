@@ -22,7 +22,7 @@ use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::Path;
 
-use microfacet_tables::Interval;
+use microfacet_tables::{Interval, MaterialEntry};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -291,6 +291,8 @@ impl<'a> Entry<'a> {
         Ok(Material {
             name: text.to_owned(),
             lobe,
+            haze: None,
+            retroreflection: MaterialEntry::SPECULAR,
             fresnel: self.field("fresnel").map(Entry::fresnel).transpose()?,
             masking: self.field("masking").map(Entry::masking).transpose()?,
             origin: Origin { format: Format::Recipe, place: self.place(), lobe: None },
