@@ -213,25 +213,31 @@ fn wrong_mixtures_are_rejected() {
     assert!(p(&back, v, |l| mixed(turned, v, l)) < 1e-10);
     let upside_down = Vec3::new(-v.x, -v.y, -v.z);
     assert!(p(&back, v, |l| mixed(v, upside_down, l)) < 1e-10);
-    // Weights of the part that was drawn, in place of both, return too much or too little light.
-    let weights = |wrong: bool| {
-        let mut sum = 0.0_f64;
-        for i in 0..40_000 {
-            let step = |step: f64| (0.5 + step * f64::from(i)).fract() as f32;
-            let (choice, u) = (step(0.819_172_513), [step(0.671_043_607), step(0.549_700_478)]);
-            let Some(sample) = pair.sample(v, choice, u, Transport::Radiance) else { continue };
-            let drawn = if choice < 0.7 { &core } else { &haze };
-            let ([f], pdf) = drawn.eval_pdf(v, sample.l, Transport::Radiance);
-            let [g] = pair.eval(v, sample.l, Transport::Radiance);
-            let weight = if wrong { g * sample.l[2] / pdf } else { sample.weight[0] };
-            assert!(f > 0.0);
-            sum += f64::from(weight) / 40_000.0;
-        }
-        sum
+    // The pair returns what its parts return, and more where f of the part that was drawn, in place
+    // of both, is divided by the density of both.
+    let numbers = |i: i32| {
+        let step = |step: f64| (0.5 + step * f64::from(i)).fract() as f32;
+        (step(0.819_172_513), [step(0.671_043_607), step(0.549_700_478)])
     };
-    // One bounce off the two returns 0.95.
-    assert!((weights(false) - 0.95).abs() < 0.03, "{}", weights(false));
-    assert!((weights(true) - weights(false)).abs() > 0.05, "{}", weights(true));
+    let mean = |weight: &dyn Fn(f32, [f32; 2]) -> Option<f32>| {
+        let weight = |i| {
+            let (choice, u) = numbers(i);
+            weight(choice, u).map(f64::from)
+        };
+        (0..40_000).filter_map(weight).sum::<f64>() / 40_000.0
+    };
+    let draw = |choice, u| pair.sample(v, choice, u, Transport::Radiance);
+    let [a, b] = [&core, &haze].map(|part| {
+        mean(&|choice, u| Some(part.sample(v, choice, u, Transport::Radiance)?.weight[0]))
+    });
+    let (right, want) = (mean(&|choice, u| Some(draw(choice, u)?.weight[0])), 0.7 * a + 0.3 * b);
+    assert!((right - want).abs() < 3e-3, "{right} for {want}");
+    let wrong = mean(&|choice, u| {
+        let l = draw(choice, u)?.l;
+        let drawn = if choice < 0.7 { &core } else { &haze };
+        Some(drawn.eval(v, l, Transport::Radiance)[0] * l[2] / pair.pdf(v, l))
+    });
+    assert!((wrong - want).abs() > 0.05, "{wrong} for {want}");
 }
 
 #[test]
