@@ -32,6 +32,18 @@ pub enum BindError {
         /// The number given.
         value: f32,
     },
+    /// A share of light outside [0, 1], or NaN.
+    Share {
+        /// The parameter: `weight` of haze, or `share` of retroreflection.
+        name: &'static str,
+        /// The number given.
+        value: f32,
+    },
+    /// A BSDF of which no retroreflection is reciprocal.
+    NoRetroreflection {
+        /// Whether it transmits light; else its lobe is tilted.
+        transmits: bool,
+    },
     /// The tables have no albedo of a lobe for the compensation that was asked for.
     NoAlbedo {
         /// The lobe.
@@ -84,6 +96,21 @@ impl fmt::Display for BindError {
             Self::Reflectance { name, value } => {
                 write!(f, "{name} = {value}: a reflectance must lie in [0, 1]")
             }
+            Self::Share { name, value } => {
+                write!(f, "{name} = {value}: a share of light must lie in [0, 1]")
+            }
+            Self::NoRetroreflection { transmits: true } => write!(
+                f,
+                "a BSDF that transmits light cannot be retroreflective: the view would be turned for \
+                 refraction as well, which sends light to the wrong side of the normal; take a \
+                 conductor or plastic"
+            ),
+            Self::NoRetroreflection { transmits: false } => write!(
+                f,
+                "a tilted lobe cannot be retroreflective: reflecting the view is reciprocal only where \
+                 half a turn about the normal leaves the lobe as it is; take an upright lobe \
+                 (theta = 0), or state that a lobe or BSDF of your own is one by `is_symmetric`"
+            ),
             Self::NoAlbedo { lobe, eta, masking, stand_in } => {
                 write!(f, "the tables hold no albedo of this lobe, {lobe}")?;
                 if let Some(eta) = eta {

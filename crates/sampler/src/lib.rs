@@ -90,6 +90,7 @@
 //! | --- | --- |
 //! | load a set of tables | [`Tables::embedded`], [`Tables::from_bytes`], [`Tables::with_fallback`] |
 //! | evaluate and sample a material | [`Conductor`], [`Dielectric`], [`Plastic`]: [`Bsdf`]; [`Tables::bsdf`] by name |
+//! | put haze around a material, or send light back | [`Haze`], [`Retroreflective`] |
 //! | get a lobe | [`Tables::student_t`], [`Tables::ellipsoid`], [`Tables::material`] by name, [`Ggx`] without tables |
 //! | evaluate and sample a lobe | [`MicrofacetDistribution`]: D, G1, visible normals; [`lobe::Reflecting`]: reflection off them; [`lobe::Batch`]: whole slices |
 //! | draw normals without tables, whatever γ | [`lobe::PseudoVisible`] |
@@ -137,8 +138,8 @@ mod vector;
 pub use bind_error::BindError;
 pub use bsdf::{
     AnyBsdf, BoundInterface, Bsdf, BsdfSample, BsdfSettings, Compensation, Conductor,
-    ConductorFresnel, Dielectric, DielectricAt, Event, FamilyDielectric, InterfaceAlbedo, Metal,
-    Plastic, StandIn, Transport, UnknownMetal,
+    ConductorFresnel, Dielectric, DielectricAt, Event, FamilyDielectric, Haze, InterfaceAlbedo,
+    Metal, Plastic, Retroreflective, StandIn, Transport, UnknownMetal,
 };
 pub use error::MaterialError;
 pub use material::{Ellipsoid, Family, Ggx, Lobe, MicrofacetDistribution, StudentT};

@@ -263,4 +263,8 @@ impl<L: Reflecting, const N: usize, A: DirectionalAlbedo> Bsdf<N> for Conductor<
     fn transmits(&self) -> bool {
         false
     }
+
+    fn is_symmetric(&self) -> bool {
+        self.smooth || self.lobe.is_symmetric()
+    }
 }

@@ -394,4 +394,8 @@ impl<L: MicrofacetDistribution, const N: usize, A: InterfaceAlbedo> Bsdf<N>
     fn transmits(&self) -> bool {
         true
     }
+
+    fn is_symmetric(&self) -> bool {
+        self.smooth || self.lobe.is_symmetric()
+    }
 }

@@ -47,7 +47,8 @@ impl<const N: usize> Mixture<N> {
         if self.p == 1.0 {
             return self.facets.weight;
         }
-        let sum = self.facets.pdf + self.broad.pdf;
+        // Of two densities that are `f32::MAX`, too.
+        let sum = saturated(self.facets.pdf + self.broad.pdf);
         if !(sum > 0.0) {
             return [0.0; N];
         }

@@ -3,7 +3,8 @@
 //!
 //! `conductor`, `dielectric` and `plastic` are the BSDFs, `any` any of them; `reflectance` is
 //! Fresnel's or Schlick's of conductors, `metal` metals by name, and `interface` the geometry of
-//! refraction. `mixture` joins single reflection with `broad`, the density of light of further
+//! refraction. `haze` is any two of them, and `retro` one that sends light back, both by `pair`.
+//! `mixture` joins single reflection with `broad`, the density of light of further
 //! bounces, or `grazing`, its closed form. `energy` and `compensation` compute the shares of light
 //! that one bounce returns and loses; `settings` says how BSDFs are made, `bind` finds albedos in
 //! tables, and `coat` computes that of a coat without tables. `family_dielectric` has what
@@ -19,11 +20,14 @@ mod dielectric;
 mod energy;
 mod family_dielectric;
 mod grazing;
+mod haze;
 mod interface;
 mod metal;
 mod mixture;
+mod pair;
 mod plastic;
 mod reflectance;
+mod retro;
 mod settings;
 
 pub use any::AnyBsdf;
@@ -33,10 +37,12 @@ pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use energy::{BoundInterface, InterfaceAlbedo};
 pub use family_dielectric::{DielectricAt, FamilyDielectric};
+pub use haze::Haze;
 pub use interface::steep_cosine;
 pub use metal::{Metal, UnknownMetal};
 pub use plastic::Plastic;
 pub use reflectance::ConductorFresnel;
+pub use retro::Retroreflective;
 pub use settings::BsdfSettings;
 
 use glam::Vec3;
@@ -185,4 +191,12 @@ pub trait Bsdf<const N: usize = 3> {
     /// Whether light passes from one side to the other.
     #[must_use]
     fn transmits(&self) -> bool;
+
+    /// Whether it stays as it is when turned by half a turn about n: f(Rv, Rl) = f(v, l) with
+    /// R(x, y, z) = (−x, −y, z), as of all [upright lobes](crate::MicrofacetDistribution). By
+    /// default no, and no [retroreflection](crate::Retroreflective) can be made of it.
+    #[must_use]
+    fn is_symmetric(&self) -> bool {
+        false
+    }
 }

@@ -375,4 +375,8 @@ impl<L: Reflecting, const N: usize, A: InterfaceAlbedo> Bsdf<N> for Plastic<L, N
     fn transmits(&self) -> bool {
         false
     }
+
+    fn is_symmetric(&self) -> bool {
+        self.smooth || self.lobe.is_symmetric()
+    }
 }

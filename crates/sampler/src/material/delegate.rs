@@ -59,6 +59,11 @@ macro_rules! forward {
             fn is_effectively_smooth(&self) -> bool {
                 $to!(self, lobe => lobe.is_effectively_smooth())
             }
+
+            #[$inline]
+            fn is_symmetric(&self) -> bool {
+                $to!(self, lobe => lobe.is_symmetric())
+            }
         }
     };
     (@Reflecting #[$inline:meta] $type:ty, $to:ident) => {

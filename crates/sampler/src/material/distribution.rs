@@ -190,4 +190,12 @@ pub trait MicrofacetDistribution {
     fn is_effectively_smooth(&self) -> bool {
         false
     }
+
+    /// Whether the lobe stays as it is when turned by half a turn about n: D(Rm) = D(m) and G1(Rv)
+    /// = G1(v) with R(x, y, z) = (−x, −y, z). So are all upright lobes, round or anisotropic, and
+    /// no tilted one. By default no, which only [retroreflection](crate::Retroreflective) minds.
+    #[must_use]
+    fn is_symmetric(&self) -> bool {
+        false
+    }
 }

@@ -323,6 +323,11 @@ impl MicrofacetDistribution for EllipsoidRef<'_> {
         let Matrix { p, q, r, x, y } = self.matrix;
         self.slices.is_smooth(p.max(q.abs()).max(r)) && x.abs().max(y.abs()) < SMOOTH
     }
+
+    /// Whether the lobe is only turned: a tilt moves the mean slope away from 0.
+    fn is_symmetric(&self) -> bool {
+        self.matrix.x == 0.0 && self.matrix.y == 0.0
+    }
 }
 
 impl Reflecting for EllipsoidRef<'_> {}

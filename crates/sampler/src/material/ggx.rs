@@ -147,6 +147,10 @@ impl MicrofacetDistribution for Ggx {
     fn is_effectively_smooth(&self) -> bool {
         self.alpha_x.max(self.alpha_y) < SMOOTH
     }
+
+    fn is_symmetric(&self) -> bool {
+        true
+    }
 }
 
 impl Reflecting for Ggx {

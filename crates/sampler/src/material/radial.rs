@@ -188,6 +188,10 @@ impl MicrofacetDistribution for Radial {
     fn is_effectively_smooth(&self) -> bool {
         self.plane.is_effectively_smooth()
     }
+
+    fn is_symmetric(&self) -> bool {
+        true
+    }
 }
 
 impl Reflecting for Radial {}

@@ -101,6 +101,13 @@ pub(crate) struct Part<const N: usize> {
 impl<const N: usize> Part<N> {
     pub(crate) const NONE: Self = Self { weight: [0.0; N], pdf: 0.0 };
 
+    /// The part of an [`f`](Self::f) and a density; [`NONE`](Self::NONE) of a light that is not
+    /// drawn.
+    #[inline(always)]
+    pub(crate) fn of_f(f: [f32; N], pdf: f32, l: Vec3) -> Self {
+        if pdf > 0.0 { Self { weight: f.map(|f| f * l.z.abs() / pdf), pdf } } else { Self::NONE }
+    }
+
     /// f, without the cosine.
     #[inline(always)]
     pub(crate) fn f(&self, l: Vec3) -> [f32; N] {

@@ -35,6 +35,10 @@ impl MicrofacetDistribution for Smooth {
     fn is_effectively_smooth(&self) -> bool {
         true
     }
+
+    fn is_symmetric(&self) -> bool {
+        true
+    }
 }
 
 impl Reflecting for Smooth {}

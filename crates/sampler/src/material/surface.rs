@@ -319,6 +319,10 @@ impl<S: Shape> MicrofacetDistribution for Surface<S> {
         let [x, y] = self.scales.sigma;
         self.shape.is_smooth(x.max(y))
     }
+
+    fn is_symmetric(&self) -> bool {
+        true
+    }
 }
 
 impl<S: Shape> Reflecting for Surface<S> {

@@ -10,7 +10,7 @@ use rand::{Rng, RngExt, SeedableRng};
 use microfacet_sampler::port::steep_cosine;
 use microfacet_sampler::{Compensation, Masking, Metal};
 
-use super::specimen::{LobeOf, Specimen, Surface};
+use super::specimen::{HazeOf, LobeOf, Specimen, Surface};
 use crate::configuration::log_uniform;
 use crate::stress::direction;
 
@@ -72,13 +72,41 @@ const INTERFACES: usize = 32;
 /// `count` configurations: conductors, dielectrics from both sides and plastics in turn, with every
 /// kind of lobe, both forms of masking and every compensation. σ is log-uniform in [0.01, 3], since
 /// single precision places the light of narrower lobes too coarsely for a test of this kind; one
-/// view in eight is within 0.01 of grazing or of the normal.
+/// view in eight is within 0.01 of grazing or of the normal. One BSDF in five has haze, and one in
+/// six sends light back.
 pub fn configurations(count: usize, seed: u64) -> Vec<Configuration> {
     let mut random = StdRng::seed_from_u64(seed);
     let interfaces: Vec<Specimen> = (0..INTERFACES.min(count.div_ceil(5)))
         .map(|i| specimen(Surface::Dielectric(any(&mut random, ETAS)), i % 8 == 0, &mut random))
         .collect();
-    (0..count).map(|i| configuration(i, &interfaces, &mut random)).collect()
+    let mut apart = StdRng::seed_from_u64(!seed);
+    (0..count)
+        .map(|i| {
+            let one = configuration(i, &interfaces, &mut random);
+            Configuration { specimen: paired(i, one.specimen, &mut apart), ..one }
+        })
+        .collect()
+}
+
+/// A specimen with haze, with light that goes back, with both, or as it is.
+fn paired(i: usize, specimen: Specimen, random: &mut StdRng) -> Specimen {
+    let share = |random: &mut StdRng| match random.random_range(0..4) {
+        0 => 0.5,
+        1 => 1.0,
+        _ => random.random_range(0.01..0.99),
+    };
+    let (weight, back) = (share(random), share(random));
+    let factor = log_uniform(random, 1.2, 8.0) as f32;
+    let sigma = specimen.sigma.map(|sigma| (sigma * factor).min(3.0));
+    // Haze of a dielectric needs albedos of its own, so that few have it.
+    let hazy = matches!(i % 16, 1 | 5 | 9) || i % 32 == 15;
+    let tilted = matches!(specimen.lobe, LobeOf::Ellipsoid(_));
+    let turns = matches!(i % 16, 7 | 8) || i % 32 == 9;
+    Specimen {
+        haze: hazy.then_some(HazeOf { weight, sigma }),
+        back: if turns && !tilted { back } else { 0.0 },
+        ..specimen
+    }
 }
 
 fn any<T: Copy, const N: usize>(random: &mut impl Rng, all: [T; N]) -> T {
@@ -106,7 +134,7 @@ fn specimen(surface: Surface, tilted: bool, random: &mut StdRng) -> Specimen {
     let ratio = if random.random() { 1.0 } else { log_uniform(random, 0.2, 5.0) };
     let sigma = [x, (x * ratio).clamp(0.01, 3.0)].map(|x| x as f32);
     let (masking, compensation) = (any(random, Masking::ALL), Compensation::None);
-    Specimen { lobe, sigma, gamma, surface, masking, compensation }
+    Specimen { lobe, sigma, gamma, surface, masking, compensation, haze: None, back: 0.0 }
 }
 
 fn configuration(i: usize, interfaces: &[Specimen], random: &mut StdRng) -> Configuration {

@@ -20,7 +20,7 @@ use microfacet_model as model;
 use microfacet_sampler::{AnyBsdf, Bsdf, Compensation, Masking, Tables, Transport};
 use microfacet_tables::{Interval, Kind, LobeSpec, Quantity, Reflectance, Table};
 
-use super::specimen::{self, LobeOf, Specimen, Surface, Unmade};
+use super::specimen::{self, HazeOf, LobeOf, Specimen, Surface, Unmade};
 use crate::furnace::{Estimate, TOLERANCE, direction, over_lights};
 use crate::run::on_threads;
 
@@ -84,18 +84,34 @@ impl Row {
 
     /// What the surface is, and from where it is seen.
     pub fn name(&self) -> &'static str {
-        match self.specimen.surface {
+        let Specimen { surface, haze, back, .. } = self.specimen;
+        match surface {
+            Surface::Dielectric(_) if haze.is_some() => NAMES[5],
             Surface::Dielectric(_) if self.cos_theta > 0.0 => NAMES[1],
             Surface::Dielectric(_) => NAMES[2],
             Surface::Plastic(..) => NAMES[3],
+            _ if back > 0.0 => NAMES[6],
+            _ if haze.is_some() => NAMES[4],
             _ => NAMES[0],
         }
     }
 }
 
 /// What [`Row::name`] returns.
-pub const NAMES: [&str; 4] =
-    ["mirror", "dielectric from outside", "dielectric from inside", "white plastic"];
+pub const NAMES: [&str; 7] = [
+    "mirror",
+    "dielectric from outside",
+    "dielectric from inside",
+    "white plastic",
+    "mirror with haze",
+    "dielectric with haze",
+    "mirror that sends light back",
+];
+
+/// Haze of the furnace; its σ is one of [`SIGMAS`].
+const HAZE: HazeOf = HazeOf { weight: 0.4, sigma: [1.0; 2] };
+/// The share of the light that goes back.
+const BACK: f32 = 0.7;
 
 impl fmt::Display for Row {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -122,25 +138,30 @@ pub fn tables(pairs: &[[f64; 2]], masking: Masking, settings: Settings) -> Resul
     specimen::tables(&specimens, Quality::Default, settings)
 }
 
-/// The rows of a survey: mirrors, dielectrics from both sides and white plastics.
+/// The rows of a survey: mirrors, dielectrics from both sides and white plastics, some with haze or
+/// with light that goes back.
 pub fn rows(pairs: &[[f64; 2]], masking: Masking) -> Vec<(Specimen, f32)> {
     let surfaces = |eta: f64| {
         let glass = Surface::Dielectric(eta);
         [
-            (Surface::Mirror, 1.0),
-            (glass, 1.0),
-            (glass, -1.0),
-            (Surface::Plastic(eta, [1.0; 3]), 1.0),
+            (Surface::Mirror, 1.0, None, 0.0),
+            (glass, 1.0, None, 0.0),
+            (glass, -1.0, None, 0.0),
+            (Surface::Plastic(eta, [1.0; 3]), 1.0, None, 0.0),
+            (Surface::Mirror, 1.0, Some(HAZE), 0.0),
+            (glass, 1.0, Some(HAZE), 0.0),
+            (Surface::Mirror, 1.0, None, BACK),
         ]
     };
     let mut rows = Vec::new();
     for &[gamma, eta] in pairs {
-        for (surface, side) in surfaces(eta) {
+        for (surface, side, haze, back) in surfaces(eta) {
             for sigma in SIGMAS {
                 let lobe = if sigma == 0.0 { LobeOf::Smooth } else { LobeOf::StudentT };
                 let compensation = Compensation::KullaConty;
                 let sigma = [sigma; 2];
-                let specimen = Specimen { lobe, sigma, gamma, surface, masking, compensation };
+                let specimen =
+                    Specimen { lobe, sigma, gamma, surface, masking, compensation, haze, back };
                 rows.extend(VIEWS.map(|cos| (specimen, side * cos)));
             }
         }
@@ -190,14 +211,19 @@ fn row(
 ) -> Result<Row, Unmade> {
     let whole = specimen.bsdf(tables)?;
     let v = direction(cos_theta);
-    let single = single(&specimen, cos_theta)?;
+    let parts = specimen.parts();
+    let single = parts.iter().try_fold(0.0, |sum, (share, part)| {
+        Ok(sum + f64::from(*share) * single(part, cos_theta)?)
+    })?;
     // Of plastic only lights outside count: its coat's transmission is not returned.
     let sides: &[f32] =
         if matches!(specimen.surface, Surface::Dielectric(_)) { &[1.0, -1.0] } else { &[1.0] };
     let returned = single + broad(&whole, &specimen.facets().bsdf(tables)?, v, sides);
     let sampled = (samples > 0).then(|| sampled(&whole, v, samples, seed));
     let promised = cos_theta.abs() >= PROMISED && specimen.lobe != LobeOf::Smooth;
-    let certified = if promised { certified(tables, &specimen) } else { None };
+    let certified =
+        || parts.iter().filter_map(|(_, part)| certified(tables, part)).reduce(f64::max);
+    let certified = if promised { certified() } else { None };
     Ok(Row { specimen, cos_theta, returned, single, sampled, certified })
 }
 

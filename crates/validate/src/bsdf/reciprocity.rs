@@ -99,6 +99,32 @@ fn direction(random: &mut StdRng) -> Vec3 {
     DVec3::new(r * cos, r * sin, z).as_vec3()
 }
 
+/// The index of refraction on the side of a direction.
+fn index_at(specimen: &Specimen, d: Vec3) -> f64 {
+    match specimen.surface {
+        Surface::Dielectric(eta) if d.z < 0.0 => f64::from(eta as f32),
+        _ => 1.0,
+    }
+}
+
+/// Whether rounding of the directions decides the facet between them, or its reflectance.
+fn is_rounding(specimen: &Specimen, v: Vec3, l: Vec3) -> bool {
+    let half = v.as_dvec3() * index_at(specimen, v) + l.as_dvec3() * index_at(specimen, l);
+    let narrow = f64::from(specimen.sigma[0].min(specimen.sigma[1]));
+    let critical = match specimen.surface {
+        Surface::Dielectric(eta) | Surface::Plastic(eta, _) if v.z * l.z > 0.0 => {
+            let eta = f64::from(eta as f32);
+            let relative = if v.z > 0.0 { eta } else { 1.0 / eta };
+            let square = 0.5 * (1.0 + v.as_dvec3().dot(l.as_dvec3()));
+            (square - (1.0 - relative * relative)).abs() < CRITICAL
+        }
+        _ => false,
+    };
+    let facing = |d: Vec3| half.dot(d.as_dvec3()).abs() / half.length();
+    let edge_on = v.z * l.z < 0.0 && facing(v).min(facing(l)) < EDGE_ON;
+    critical || edge_on || half.length() * narrow < RESOLVED || half.z.abs() < STEEP
+}
+
 /// Compares f for `count` random pairs of directions of one BSDF.
 ///
 /// # Errors
@@ -124,30 +150,15 @@ pub fn compare(
                 None => continue,
             },
         };
-        let index = |d: Vec3| match specimen.surface {
-            Surface::Dielectric(eta) if d.z < 0.0 => f64::from(eta as f32),
-            _ => 1.0,
-        };
-        let half = v.as_dvec3() * index(v) + l.as_dvec3() * index(l);
-        let narrow = f64::from(specimen.sigma[0].min(specimen.sigma[1]));
-        let critical = match specimen.surface {
-            Surface::Dielectric(eta) | Surface::Plastic(eta, _) if v.z * l.z > 0.0 => {
-                let eta = f64::from(eta as f32);
-                let relative = if v.z > 0.0 { eta } else { 1.0 / eta };
-                let square = 0.5 * (1.0 + v.as_dvec3().dot(l.as_dvec3()));
-                (square - (1.0 - relative * relative)).abs() < CRITICAL
-            }
-            _ => false,
-        };
-        let facing = |d: Vec3| half.dot(d.as_dvec3()).abs() / half.length();
-        let edge_on = v.z * l.z < 0.0 && facing(v).min(facing(l)) < EDGE_ON;
-        let unresolved = edge_on || half.length() * narrow < RESOLVED || half.z.abs() < STEEP;
-        if unresolved || critical {
+        // Light that goes back is that of the view after half a turn.
+        let turned = Vec3::new(-v.x, -v.y, v.z);
+        if is_rounding(specimen, v, l) || specimen.back > 0.0 && is_rounding(specimen, turned, l) {
             continue;
         }
         let f = |v, l| {
             let [f, ..] = bsdf.eval(v, l, Transport::Radiance);
-            (f, f64::from(f) / (index(v) * index(v)))
+            let index = index_at(specimen, v);
+            (f, f64::from(f) / (index * index))
         };
         let ((there, a), (back, b)) = (f(v, l), f(l, v));
         // Both conditions are false for a NaN, which is therefore compared.

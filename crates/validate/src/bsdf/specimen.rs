@@ -9,7 +9,7 @@ use microfacet_baker::table_spec::{GAMMA_MIN, Quality};
 use microfacet_sampler::lobe::Smooth;
 use microfacet_sampler::{
     AnyBsdf, BindError, BsdfSettings, Compensation, Conductor, ConductorFresnel, Dielectric, Ggx,
-    Lobe, Masking, MaterialError, Metal, Plastic, Skew, StandIn, Tables,
+    Haze, Lobe, Masking, MaterialError, Metal, Plastic, Retroreflective, Skew, StandIn, Tables,
 };
 use microfacet_tables::Precision;
 
@@ -43,6 +43,15 @@ pub enum Surface {
     Plastic(f64, [f32; 3]),
 }
 
+/// Haze around a specimen: another lobe of the same kind and γ, a Student-t around a smooth core.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HazeOf {
+    /// Its weight.
+    pub weight: f32,
+    /// σx and σy of its lobe.
+    pub sigma: [f32; 2],
+}
+
 /// A BSDF as data.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Specimen {
@@ -58,6 +67,10 @@ pub struct Specimen {
     pub masking: Masking,
     /// The compensation.
     pub compensation: Compensation,
+    /// Haze around it, if any.
+    pub haze: Option<HazeOf>,
+    /// The share of the light that goes back to where it came from.
+    pub back: f32,
 }
 
 /// Why a specimen or its tables cannot be made.
@@ -103,14 +116,24 @@ impl Specimen {
         Self { lobe, gamma: (self.gamma * factor).max(GAMMA_MIN), ..self }
     }
 
-    /// Its facets alone, without a base and without compensation.
+    /// Its facets alone, without a base and without compensation; of a plastic, none of whose light
+    /// goes back, since they transmit.
     #[must_use]
     pub fn facets(self) -> Self {
-        let surface = match self.surface {
-            Surface::Plastic(eta, _) => Surface::Dielectric(eta),
-            other => other,
+        let (surface, back) = match self.surface {
+            Surface::Plastic(eta, _) => (Surface::Dielectric(eta), 0.0),
+            other => (other, self.back),
         };
-        Self { surface, compensation: Compensation::None, ..self }
+        Self { surface, back, compensation: Compensation::None, ..self }
+    }
+
+    /// The parts that it is a mixture of, with the share of each: itself, or a core and its haze.
+    /// Light that goes back does so from both.
+    pub fn parts(self) -> Vec<(f32, Self)> {
+        let core = Self { haze: None, back: 0.0, ..self };
+        let Some(HazeOf { weight, sigma }) = self.haze else { return vec![(1.0, core)] };
+        let lobe = if self.lobe == LobeOf::Smooth { LobeOf::StudentT } else { self.lobe };
+        vec![(1.0 - weight, core), (weight, Self { lobe, sigma, ..core })]
     }
 
     /// The BSDF, with a dielectric's albedos from `tables`, a conductor's and the lobe from the
@@ -123,6 +146,19 @@ impl Specimen {
     }
 
     fn bound(&self, tables: &Tables) -> Result<AnyBsdf, BindError> {
+        let whole = match self.parts()[..] {
+            [(_, core), (weight, haze)] => {
+                Haze::new(core.part(tables)?, haze.part(tables)?, weight)?.into()
+            }
+            _ => self.part(tables)?,
+        };
+        match self.back {
+            0.0 => Ok(whole),
+            back => Ok(Retroreflective::new(whole, back)?.into()),
+        }
+    }
+
+    fn part(&self, tables: &Tables) -> Result<AnyBsdf, BindError> {
         let lobe = self.lobe()?;
         let settings = BsdfSettings::new().with_masking(self.masking).with_stand_in(StandIn::Round);
         let dielectric = settings.compensated(self.compensation, tables);
@@ -172,7 +208,9 @@ pub fn recipe(specimens: &[Specimen]) -> String {
     };
     // Specimens may share an interface, whose albedos are baked once.
     let mut wanted: Vec<([f64; 2], &Specimen)> = Vec::new();
-    for specimen in specimens {
+    let parts: Vec<Specimen> =
+        specimens.iter().flat_map(|one| one.parts()).map(|(_, part)| part).collect();
+    for specimen in &parts {
         let Some(interface) = specimen.wanted() else { continue };
         let same = |(of, other): &([f64; 2], &Specimen)| {
             (*of, other.gamma, other.masking) == (interface, specimen.gamma, specimen.masking)
@@ -209,13 +247,19 @@ pub fn tables(
 /// Prints the parameters by the names of a recipe.
 impl fmt::Display for Specimen {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { lobe, sigma: [x, y], gamma, surface, masking, compensation } = self;
+        let Self { lobe, sigma: [x, y], gamma, surface, masking, compensation, haze, back } = self;
         match surface {
             Surface::Mirror => f.write_str("mirror")?,
             Surface::Schlick(f0) => write!(f, "conductor of f0 {f0:?}")?,
             Surface::Metal(metal) => f.write_str(metal.name())?,
             Surface::Dielectric(eta) => write!(f, "dielectric of eta {eta}")?,
             Surface::Plastic(eta, base) => write!(f, "plastic of eta {eta} and base {base:?}")?,
+        }
+        if let Some(HazeOf { weight, sigma: [x, y] }) = haze {
+            write!(f, " with haze of weight {weight} and sigma {x},{y}")?;
+        }
+        if *back > 0.0 {
+            write!(f, ", {back} of it sent back")?;
         }
         match lobe {
             LobeOf::StudentT => f.write_str(", Student-t")?,

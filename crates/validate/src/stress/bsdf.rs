@@ -25,6 +25,7 @@ impl Checker<'_, Lobe> {
             }
             self.bsdf(&bsdfs.plastic, v, at, i, Transport::Radiance, [f64::from(f32::MAX), 0.0]);
             self.black(&bsdfs.plastic, -v, at);
+            self.pairs(bsdfs, v, at, i);
             let (eta, dielectric) = &bsdfs.dielectrics[(turn + i) % count];
             for v in [v, -v] {
                 let relative = f64::from(if v.z > 0.0 { *eta } else { 1.0 / *eta });
@@ -32,6 +33,22 @@ impl Checker<'_, Lobe> {
                 self.bsdf(dielectric, v, at, i, Transport::Radiance, radiance);
                 self.bsdf(dielectric, v, at, i + 1, Transport::Importance, [1.0; 2]);
             }
+        }
+    }
+
+    /// Tests haze and light that goes back.
+    fn pairs(&mut self, bsdfs: &Bsdfs, v: Vec3, at: &Point, i: usize) {
+        for hazy in &bsdfs.hazy[i % bsdfs.hazy.len()] {
+            self.bsdf(hazy, v, at, i, Transport::Radiance, [1.0, 0.0]);
+            self.black(hazy, -v, at);
+        }
+        for (form, back) in bsdfs.back.iter().enumerate() {
+            let most = if form == 0 { 1.0 } else { f64::from(f32::MAX) };
+            self.bsdf(back, v, at, i, Transport::Radiance, [most, 0.0]);
+            self.black(back, -v, at);
+        }
+        for v in [v, -v] {
+            self.bsdf(&bsdfs.hazy_glass, v, at, i, Transport::Importance, [1.0; 2]);
         }
     }
 
