@@ -18,7 +18,8 @@ use super::{Context, Result, bail, print, watched};
 
 /// Fit a Student-t to a measured distribution of normals, or to measured materials.
 ///
-/// --input reads a CSV with the columns angle and D, and fits sigma and gamma. --merl reads files
+/// --input reads a CSV with the columns angle and D, and fits sigma and gamma; beside them, for
+/// comparison, Beckmann, GGX, two GGX (haze) and the ABC of Loew et al. 2012. --merl reads files
 /// of the MERL database (Matusik et al. 2003; isotropic reflectances, .binary), and fits to each a
 /// Lambert term and a Cook-Torrance lobe of Beckmann, GGX and Student-t: an albedo and an F0
 /// (Schlick) for red, green and blue, a sigma and a gamma for all, with uncorrelated masking. The
@@ -80,7 +81,7 @@ fn normals(input: &Path, args: &Args) -> Result<String> {
         writeln!(text, "nothing above {last}: D is taken as zero there")?;
     }
     writeln!(text, "{:<44}{:>14}{:>16}", "fit", "RMSE of D/D(0)", "RMSE of D, 1/sr")?;
-    for found in [&found.student_t, &found.beckmann, &found.ggx] {
+    for found in found.all() {
         let ([relative, density], to) = (found.rmse, found.to.to_string());
         let ends = ends(&found.ends_at);
         writeln!(text, "{to:<44}{relative:>14.4e}{density:>16.4e}{ends}")?;

@@ -25,13 +25,18 @@ use rand::{RngExt, SeedableRng};
 
 use crate::sets::{outside, set_of};
 
+/// Distributions whose slopes are far apart: a haze forty times as rough as its core, and a long
+/// tail of a narrow peak.
+const APART: [&str; 2] = ["haze:0.02,0.8,0.6", "abc:1e4,1.4"];
+
 /// Distributions of every kind, by name.
 fn all() -> Vec<(String, Box<dyn Isotropic>)> {
     let built = |text: &str| text.parse::<Named>().unwrap().build().unwrap();
     let names = "gauss:0.1 gauss:0.4 gtr:0.1,1.2 gtr:0.3,3 gtr:0.5,0.7 schlick:0.05 schlick:0.3 \
-                 sawicki:0 sawicki:12 sawicki:1000";
+                 sawicki:0 sawicki:12 sawicki:1000 haze:0.1,0.4,0.3 haze:0.05,0.5,0.6 \
+                 haze:0.5,0.1,0.2 abc:30,1 abc:300,2";
     let mut all: Vec<(String, Box<dyn Isotropic>)> =
-        names.split(' ').map(|text| (text.into(), built(text))).collect();
+        names.split(' ').chain(APART).map(|text| (text.into(), built(text))).collect();
     let smooth = built("gauss:0.25");
     let angles = (0..=450).map(|i| f64::from(i) * 0.5 * PI / 450.0);
     let rows: Vec<_> = angles.map(|t| (t, smooth.d(t) + 0.02)).collect();
@@ -52,7 +57,9 @@ static LOBES: LazyLock<Vec<Lobe>> =
 fn tables_follow_the_quadrature() {
     for ((name, d), radial) in all().into_iter().zip(LOBES.iter()) {
         let e = measure(radial, &Marginal::new(&*d));
-        let close = e.g1 < 1e-4 && e.along < 5e-4 && e.across < 5e-4 && e.density < 1e-3;
+        // The nodes of one table serve such slopes worse, as its certificate says.
+        let most = if APART.contains(&&*name) { 2e-3 } else { 5e-4 };
+        let close = e.g1 < 1e-4 && e.along < most && e.across < most && e.density < 1e-3;
         assert!(close, "{name}: {e:?}");
     }
 }

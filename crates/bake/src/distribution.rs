@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use microfacet_core::shape::gamma_of_s;
 use microfacet_model::classic::{
-    AshikhminShirley, Gauss, Gtr, Isotropic, Member, Sawicki, Schlick, Tabulated,
+    Abc, AshikhminShirley, Gauss, Gtr, Haze, Isotropic, Member, Sawicki, Schlick, Tabulated,
 };
 
 use crate::input::angles::Angles;
@@ -14,7 +14,7 @@ use crate::input::angles::Angles;
 /// The largest s = 1/(γ−1) of a search: γ = 1.5025.
 pub const S_MAX: f64 = 1.99;
 
-/// A named distribution of one or two parameters.
+/// A named distribution of one to three parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DistributionKind {
@@ -38,6 +38,10 @@ pub enum DistributionKind {
     HyperCauchy,
     /// Ashikhmin–Shirley, exponents along x and y; isotropic only where they are equal.
     AshikhminShirley,
+    /// The normals of two GGX: their σ, and the share of the second.
+    Haze,
+    /// Löw and others' ABC, B and C.
+    Abc,
 }
 
 /// A distribution with its parameters.
@@ -139,7 +143,7 @@ impl fmt::Display for DistributionKind {
 
 impl DistributionKind {
     /// All kinds.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::Beckmann,
         Self::Gauss,
         Self::TrowbridgeReitz,
@@ -150,6 +154,8 @@ impl DistributionKind {
         Self::StudentT,
         Self::HyperCauchy,
         Self::AshikhminShirley,
+        Self::Haze,
+        Self::Abc,
     ];
 
     /// The name in recipes and on the command line.
@@ -174,6 +180,8 @@ impl DistributionKind {
             Self::StudentT => ("student-t", &["sigma", "gamma"]),
             Self::HyperCauchy => ("hyper-cauchy", &["sigma0", "gamma"]),
             Self::AshikhminShirley => ("ashikhmin-shirley", &["nx", "ny"]),
+            Self::Haze => ("haze", &["sigma_core", "sigma_haze", "weight"]),
+            Self::Abc => ("abc", &["b", "c"]),
         }
     }
 
@@ -206,6 +214,8 @@ impl DistributionKind {
             (Self::Schlick, &[m]) => self.boxed(Schlick::new(m)),
             (Self::Sawicki, &[n]) => self.boxed(Sawicki::new(n)),
             (Self::Gtr, &[c, gamma]) => self.boxed(Gtr::new(c, gamma)),
+            (Self::Haze, &[core, haze, weight]) => self.boxed(Haze::new(core, haze, weight)),
+            (Self::Abc, &[b, c]) => self.boxed(Abc::new(b, c)),
             (Self::AshikhminShirley, &[nx, ny]) => {
                 self.in_range(AshikhminShirley::new(nx, ny))?;
                 if nx != ny {
@@ -229,7 +239,8 @@ impl DistributionKind {
     }
 
     /// Parameters at a point of the search space [0, 1]ⁿ: logarithmic in the width; in s = 1/(γ−1)
-    /// (Student-t, with Beckmann at 0) or ln γ (GTR) for the shape.
+    /// (Student-t, with Beckmann at 0), ln γ (GTR) or ln C (ABC) for the shape. A haze is 1 to 100
+    /// times as rough as its core.
     ///
     /// All widths are scaled by `narrow` ∈ (0, 1], so that the search for a narrow lobe has the
     /// same steps as for any other.
@@ -250,15 +261,24 @@ impl DistributionKind {
             // No Beckmann limit: σ₀ would diverge.
             (Self::HyperCauchy, &[y, z]) => vec![width(y, 1e-4, 1e3), gamma(z.max(1e-4))],
             (Self::Gtr, &[y, z]) => vec![width(y, 1e-5, 1.0), log(z, 0.1, 100.0)],
+            (Self::Haze, &[y, z, weight]) => {
+                let core = width(y, 1e-4, 10.0);
+                vec![core, core * log(z, 1.0, 100.0), weight.clamp(0.0, 1.0)]
+            }
+            (Self::Abc, &[y, z]) => vec![width(y, 1e-5, 10.0).powi(-2), log(z, 0.1, 100.0)],
             _ => unreachable!("points have `dimension` coordinates"),
         }
     }
 
     /// The names of the parameters that are at an end of the range of [`at`](Self::at), except the
-    /// limit γ = ∞.
+    /// limits γ = ∞ of the Student-t and the single GGX of a haze.
     pub fn ends_at(self, point: &[f64]) -> Vec<&'static str> {
         let at_end = |y: f64| !(1e-4..=1.0 - 1e-4).contains(&y);
-        let is_limit = |i: usize| self == Self::StudentT && i == 1 && point[i] < 0.5;
+        let is_limit = |i: usize| match self {
+            Self::StudentT => i == 1 && point[i] < 0.5,
+            Self::Haze => i == 2 || i == 1 && point[i] < 0.5,
+            _ => false,
+        };
         let ends = (0..point.len()).filter(|&i| at_end(point[i]) && !is_limit(i));
         ends.map(|i| self.parameters()[i]).collect()
     }
@@ -279,7 +299,7 @@ impl Named {
 impl FromStr for Named {
     type Err = DistributionError;
 
-    /// Parses `name:value` or `name:value,value`; `inf` is a number.
+    /// Parses `name:value`, with further values after commas; `inf` is a number.
     fn from_str(text: &str) -> Result<Self, DistributionError> {
         let (name, rest) = text.split_once(':').unwrap_or((text, ""));
         let kind = DistributionKind::by_name(name)?;
@@ -333,6 +353,9 @@ mod tests {
         assert!(message("beckmann:x").contains("beckmann:m"));
         assert!(message("schlick:2").contains("(0, 1]"));
         assert!(message("sawicki:-1").contains("[0, inf)"));
+        assert!(message("haze:0.1,0.4").contains("haze:sigma_core,sigma_haze,weight"));
+        assert!(message("haze:0.1,0.4,1.5").contains("weight = 1.5: must lie in [0, 1]"));
+        assert!(message("abc:10,-1").contains("c = -1"));
         assert!(message("ashikhmin-shirley:10,20").contains("anisotropic"));
     }
 }

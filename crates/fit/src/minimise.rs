@@ -1,23 +1,21 @@
-//! The least value of a function of one or two coordinates, each in [0, 1]: a scan finds the basin,
-//! a local search its bottom.
-
-use std::array;
+//! The least value of a function of one to three coordinates, each in [0, 1]: a scan finds the
+//! basin, a local search its bottom.
 
 use argmin::core::{CostFunction, Error, Executor, State};
 use argmin::solver::brent::BrentOpt;
 use argmin::solver::neldermead::NelderMead;
 use argmin_math::{ArgminAdd, ArgminMul, ArgminSub};
 
-/// The points of a scan in `steps` equal steps along each of `dimension` coordinates, both ends
-/// included; the last coordinate varies fastest.
-pub(crate) fn grid(dimension: usize, steps: [usize; 2]) -> Vec<Vec<f64>> {
-    let scale = |i: usize, n: usize| i as f64 / n as f64;
-    let firsts = (0..=steps[0]).map(|i| scale(i, steps[0]));
-    if dimension == 1 {
-        return firsts.map(|x| vec![x]).collect();
+/// The points of a scan in so many equal steps along each coordinate, both ends included; the last
+/// coordinate varies fastest.
+pub(crate) fn grid(steps: &[usize]) -> Vec<Vec<f64>> {
+    let mut points = vec![Vec::new()];
+    for &n in steps {
+        let along =
+            |point: Vec<f64>| (0..=n).map(move |i| [&point[..], &[i as f64 / n as f64]].concat());
+        points = points.into_iter().flat_map(along).collect();
     }
-    let seconds = |x| (0..=steps[1]).map(move |j| vec![x, scale(j, steps[1])]);
-    firsts.flat_map(seconds).collect()
+    points
 }
 
 /// When a local search ends.
@@ -25,12 +23,12 @@ pub(crate) fn grid(dimension: usize, steps: [usize; 2]) -> Vec<Vec<f64>> {
 pub(crate) struct Stop {
     /// In one coordinate: relative width of the bracket, with a tenth of it as absolute width.
     pub(crate) width: f64,
-    /// In two: standard deviation of the cost at the corners of the simplex.
+    /// In more: standard deviation of the cost at the corners of the simplex.
     pub(crate) spread: f64,
 }
 
 /// Searches for a minimum near `start`, within `h` in one coordinate, from a simplex of sides 0.4 h
-/// in two, and returns where it is. A cost of NaN counts as `f64::MAX`.
+/// in more, and returns where it is. A cost of NaN counts as `f64::MAX`.
 pub(crate) fn descend(
     start: &[f64],
     h: f64,
@@ -42,7 +40,7 @@ pub(crate) fn descend(
         if cost.is_finite() { cost } else { f64::MAX }
     };
     let failed = |e: Error| e.to_string();
-    let &[x, y] = start else {
+    if start.len() == 1 {
         let solver = BrentOpt::new((start[0] - h).max(0.0), (start[0] + h).min(1.0))
             .set_tolerance(stop.width, 0.1 * stop.width);
         let run = Executor::new(Line(cost), solver)
@@ -50,43 +48,48 @@ pub(crate) fn descend(
             .run()
             .map_err(failed)?;
         return Ok(vec![*run.state().get_best_param().unwrap_or(&start[0])]);
-    };
+    }
     // Off the edges of the square, where the simplex would be flat.
-    let [x, y] = [x, y].map(|c| c.clamp(0.5 * h, 1.0 - 0.5 * h));
-    let simplex = [[x, y], [x + 0.4 * h, y], [x, y + 0.4 * h]].map(Point).to_vec();
+    let first: Vec<f64> = start.iter().map(|c| c.clamp(0.5 * h, 1.0 - 0.5 * h)).collect();
+    let corner = |i: usize| {
+        let mut corner = first.clone();
+        corner[i] += 0.4 * h;
+        Point(corner)
+    };
+    let simplex = [Point(first.clone())].into_iter().chain((0..first.len()).map(corner)).collect();
     let solver = NelderMead::new(simplex).with_sd_tolerance(stop.spread).map_err(failed)?;
     let run = Executor::new(Square(cost), solver)
         .configure(|s| s.max_iters(2000))
         .run()
         .map_err(failed)?;
-    let best = run.state().get_best_param().map_or([x, y], |best| best.0);
-    Ok(inside(best).to_vec())
+    let best = run.state().get_best_param().map_or(&first, |best| &best.0);
+    Ok(inside(best))
 }
 
-fn inside(point: [f64; 2]) -> [f64; 2] {
-    point.map(|y| y.clamp(0.0, 1.0))
+fn inside(point: &[f64]) -> Vec<f64> {
+    point.iter().map(|y| y.clamp(0.0, 1.0)).collect()
 }
 
 /// A corner of a simplex. The crate's own arithmetic of lists comes with random ones of them, for
 /// which it needs a second generation of `rand`.
 #[derive(Clone, Debug)]
-struct Point([f64; 2]);
+struct Point(Vec<f64>);
 
 impl ArgminAdd<Point, Point> for Point {
     fn add(&self, other: &Point) -> Point {
-        Point(array::from_fn(|i| self.0[i] + other.0[i]))
+        Point(self.0.iter().zip(&other.0).map(|(a, b)| a + b).collect())
     }
 }
 
 impl ArgminSub<Point, Point> for Point {
     fn sub(&self, other: &Point) -> Point {
-        Point(array::from_fn(|i| self.0[i] - other.0[i]))
+        Point(self.0.iter().zip(&other.0).map(|(a, b)| a - b).collect())
     }
 }
 
 impl ArgminMul<f64, Point> for Point {
     fn mul(&self, factor: &f64) -> Point {
-        Point(self.0.map(|x| x * factor))
+        Point(self.0.iter().map(|x| x * factor).collect())
     }
 }
 
@@ -107,7 +110,7 @@ impl<F: Fn(&[f64]) -> f64> CostFunction for Square<F> {
     type Param = Point;
     type Output = f64;
 
-    fn cost(&self, &Point(point): &Point) -> Result<f64, Error> {
+    fn cost(&self, Point(point): &Point) -> Result<f64, Error> {
         let inside = inside(point);
         let cost = (self.0)(&inside);
         // A point outside the square has the value at its edge plus a slope that leads the simplex
@@ -125,10 +128,12 @@ mod tests {
 
     #[test]
     fn a_scan_holds_both_ends() {
-        assert_eq!(grid(1, [2, 9]), [[0.0], [0.5], [1.0]]);
-        let square = grid(2, [1, 2]);
+        assert_eq!(grid(&[2]), [[0.0], [0.5], [1.0]]);
+        let square = grid(&[1, 2]);
         assert_eq!(square[..3], [[0.0, 0.0], [0.0, 0.5], [0.0, 1.0]]);
         assert_eq!((square.len(), &square[5]), (6, &vec![1.0, 1.0]));
+        let cube = grid(&[1, 2, 3]);
+        assert_eq!((cube.len(), &cube[5]), (24, &vec![0.0, 0.5, 1.0 / 3.0]));
     }
 
     #[test]
@@ -139,6 +144,10 @@ mod tests {
             let bowl = |p: &[f64]| (p[0] - at).powi(2) + (p[1] - 0.7).powi(2);
             let found = descend(&[at, 0.4], 0.1, STOP, bowl).unwrap();
             assert!((found[0] - at).abs() < 1e-6 && (found[1] - 0.7).abs() < 1e-6, "{found:?}");
+            let bowl = |p: &[f64]| bowl(p) + (p[2] - 0.2).powi(2);
+            let found = descend(&[at, 0.4, 0.5], 0.1, STOP, bowl).unwrap();
+            let near = [at, 0.7, 0.2].iter().zip(&found).all(|(a, b)| (a - b).abs() < 1e-6);
+            assert!(near, "{at}: {found:?}");
         }
     }
 

@@ -12,6 +12,7 @@ pub mod dielectric_views;
 pub mod ellipsoid_cost;
 pub mod ellipsoid_note;
 pub mod engines;
+pub mod fit_normals;
 pub mod frame_time;
 pub mod merl;
 pub mod planned;
@@ -25,6 +26,7 @@ pub mod spheres;
 pub mod stand_in;
 pub mod student_t_paper;
 pub mod table_design;
+pub mod tail;
 
 use std::error::Error;
 
@@ -52,7 +54,7 @@ const fn study(name: &'static str, what: &'static str, run: fn(&[String]) -> Out
 }
 
 /// All studies, by name.
-pub const STUDIES: [Study; 21] = [
+pub const STUDIES: [Study; 23] = [
     study(
         "albedo_convergence",
         "error against time of one directional albedo",
@@ -73,6 +75,7 @@ pub const STUDIES: [Study; 21] = [
     study("ellipsoid_cost", "time of a normal of an ellipsoid", ellipsoid_cost::run),
     study("ellipsoid_note", "the claims of the Ellipsoid note", ellipsoid_note::run),
     study("engines", "errors of the albedos that engines ship [FOLDER]", engines::run),
+    study("fit_normals", "fits of five distributions to synthetic normals", fit_normals::run),
     study("frame_time", "time to picture of textured gold beside GGX; --help", frame_time::run),
     study("merl", "makes files in the format of the MERL database [--start] FOLDER", merl::run),
     study("planned", "what bakes take next to what is planned [RECIPE ...]", planned::run),
@@ -94,6 +97,7 @@ pub const STUDIES: [Study; 21] = [
     ),
     study("student_t_paper", "the equations of Ribardiere et al. 2017", student_t_paper::run),
     study("table_design", "designs of the table of visible slopes", table_design::run),
+    study("tail", "a second GGX and one gamma for each other [FOLDER]", tail::run),
 ];
 
 /// Prints the head of a table in Markdown.

@@ -15,12 +15,14 @@ use super::{Result, bail, ensure, print, watched, words};
 enum By {
     HalfAngle,
     Rmse,
+    Variation,
     Formula,
 }
 
-const WAYS: [Named<By>; 3] = [
+const WAYS: [Named<By>; 4] = [
     ("half-angle", "Equal angle at which D falls to half", By::HalfAngle),
     ("rmse", "Least root mean square error over a uniform grid of angles", By::Rmse),
+    ("variation", "Least total variation of the densities of slopes", By::Variation),
     ("formula", "The published formulas, each by its source, where there are any", By::Formula),
 ];
 
@@ -31,10 +33,17 @@ pub(super) const FORMS: [Named<Form>; 2] = [
 ];
 
 /// Replace one distribution of normals by another, and print how much they differ.
+///
+/// RMSE is over a uniform grid of angles. TV is the total variation of the densities of slopes,
+/// half of the integral of |difference|: the share of the projected area, from 0 to 1, whose
+/// normals differ. The last distance is the largest difference of D G2/(4 cos cos) over the largest
+/// value of the distribution that is replaced, for a light at 45 degrees from the normal, views in
+/// the plane of incidence at most 80 degrees from it, and height-correlated masking.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  microfacet-bake convert --from blinn-phong:50 --to beckmann\n  \
-                  microfacet-bake convert --from ggx:0.2 --to sawicki --by formula"
+                  microfacet-bake convert --from ggx:0.2 --to sawicki --by formula\n  \
+                  microfacet-bake convert --from haze:0.1,0.4,0.3 --to student-t --by variation"
 )]
 pub(super) struct Args {
     /// Distribution to be replaced, such as `blinn-phong:50` or `student-t:0.3,2.5`.
@@ -79,9 +88,10 @@ impl Args {
 
     fn pair(&self, from: &Distribution, to: DistributionKind) -> Result<String> {
         ensure!(
-            self.shape.is_none() || to.parameters().len() > 1,
-            "--shape is for a distribution of two parameters, and {} has one: drop it",
-            to.name()
+            self.shape.is_none() || to.parameters().len() == 2,
+            "--shape is for a distribution of two parameters, and {} has {}: drop it",
+            to.name(),
+            if to.parameters().len() == 1 { "one" } else { "three" }
         );
         for (option, given, way) in [
             ("--shape", self.shape.is_some(), By::HalfAngle),
@@ -96,14 +106,19 @@ impl Args {
         let built = from.build()?;
         let target = Target::new(&*built);
         let is_taken = |way: By| self.by.is_none_or(|by| by == way);
-        let work = if is_taken(By::Rmse) { target.seconds(to) } else { 0.0 };
-        let found: Vec<_> = watched("searching", work, |meter| {
+        let work = |way, seconds| if is_taken(way) { seconds } else { 0.0 };
+        let rmse = work(By::Rmse, target.seconds(to));
+        let variation = work(By::Variation, target.seconds_of_variation(to));
+        let found: Vec<_> = watched("searching", rmse + variation, |meter| {
             // The replacements of each way; the published formulas may give several.
             let replace = |by| match by {
                 By::HalfAngle => vec![target.by_half_angle(to, self.shape).map(Line::plain)],
                 By::Rmse => {
                     let form = self.on.unwrap_or(Form::Relative);
-                    vec![target.by_rmse(to, form, &meter.stage(work)).map(Line::plain)]
+                    vec![target.by_rmse(to, form, &meter.stage(rmse)).map(Line::plain)]
+                }
+                By::Variation => {
+                    vec![target.by_variation(to, &meter.stage(variation)).map(Line::plain)]
                 }
                 By::Formula => match by_formula(from, to) {
                     Ok(all) => {
@@ -117,8 +132,14 @@ impl Args {
                 .collect()
         });
         let mut text = format!(
-            "{:<12}{:<40}{:>14}{:>17}  {}\n",
-            "by", "replacement", "RMSE of D/D(0)", "RMSE of D, 1/sr", "source"
+            "{:<12}{:<36}{:>14}{:>17}{:>14}{:>14}  {}\n",
+            "by",
+            "replacement",
+            "RMSE of D/D(0)",
+            "RMSE of D, 1/sr",
+            "TV of slopes",
+            "of reflection",
+            "source"
         );
         let (mut lines, mut refusals) = (0, Vec::new());
         for (name, result) in found {
@@ -126,14 +147,20 @@ impl Args {
                 Ok(Line { found, remark }) => {
                     let [relative, density] = found.rmse;
                     let to = found.to.to_string();
-                    let line =
-                        format!("{name:<12}{to:<40}{relative:>14.4e}{density:>17.4e}  {remark}");
+                    let Replacement { variation, reflection, .. } = found;
+                    let line = format!(
+                        "{name:<12}{to:<36}{relative:>14.4e}{density:>17.4e}{variation:>14.4e}\
+                         {reflection:>14.4e}  {remark}"
+                    );
                     writeln!(text, "{}", line.trim_end())?;
                     lines += 1;
                 }
                 // Without a choice, the ways that do not apply to this pair are left out.
-                Err(ConvertError::NoFormula(..) | ConvertError::ShapeNeeded(_))
-                    if self.by.is_none() => {}
+                Err(
+                    ConvertError::NoFormula(..)
+                    | ConvertError::ShapeNeeded(_)
+                    | ConvertError::OfThree(_),
+                ) if self.by.is_none() => {}
                 // A way that fails is reported after the others.
                 Err(why) => refusals.push((name, why)),
             }
@@ -216,10 +243,15 @@ mod tests {
         let rows: Vec<&str> = formulas.lines().skip(1).map(|line| &line[12..36]).collect();
         let of = |n: &str| format!("{:<24}", format!("blinn-phong:{n}"));
         assert_eq!(rows, ["48.000000", "50.000000", "47.500000"].map(of), "{formulas}");
-        assert_eq!(run("--from blinn-phong:50 --to student-t").unwrap().lines().count(), 2);
+        assert_eq!(run("--from blinn-phong:50 --to student-t").unwrap().lines().count(), 3);
+        let tail = run("--from haze:0.1,0.4,0.3 --to student-t").unwrap();
+        assert_eq!(tail.lines().count(), 3, "{tail}");
+        assert!(tail.contains("\nvariation   student-t:0."), "{tail}");
         for (line, why) in [
             ("--from gauss:0.1 --to schlick --by formula", "no formula is"),
             ("--from gauss:0.1 --to student-t --by half-angle", "--shape"),
+            ("--from gauss:0.1 --to haze --by half-angle", "has three: use rmse or variation"),
+            ("--from gauss:0.1 --to haze --shape 2", "haze has three: drop it"),
             ("--from ashikhmin-shirley:10,90 --to gauss", "anisotropic"),
             ("--from gauss:0.1", "--to"),
             // D of this GGX nowhere falls to half of D(0).

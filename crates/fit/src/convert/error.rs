@@ -20,11 +20,14 @@ pub enum ConvertError {
         "a half angle fixes one parameter and {} has two: use rmse, or give the second", .0.name()
     )]
     ShapeNeeded(DistributionKind),
+    /// A half angle fixes one parameter; this kind of distribution has three.
+    #[error("a half angle fixes one parameter and {} has three: use rmse or variation", .0.name())]
+    OfThree(DistributionKind),
     /// No published formula is known for this pair.
     #[error(
         "no formula is published from {} to {}; there are some between any two of beckmann, \
          blinn-phong, gauss, trowbridge-reitz and sawicki, and between beckmann and schlick; \
-         half-angle and rmse work between any two", .0.name(), .1.name()
+         half-angle, rmse and variation work between any two", .0.name(), .1.name()
     )]
     NoFormula(DistributionKind, DistributionKind),
     /// The result of a published formula is out of range; where the formula is printed.

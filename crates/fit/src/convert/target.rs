@@ -1,5 +1,5 @@
-//! The distribution to be replaced on a grid of angles, and its replacements by equal half angle
-//! and by the least error.
+//! The distribution to be replaced on grids of angles and slopes, and its replacements by equal
+//! half angle and by the least distance.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -7,6 +7,7 @@ use microfacet_baker::distribution::{DistributionKind, Named};
 use microfacet_baker::progress::Stage;
 use microfacet_model::classic::{Isotropic, Tabulated};
 
+use super::distance::Slopes;
 use super::{ConvertError, Form, Replacement};
 use crate::minimise::{self, Stop};
 
@@ -16,6 +17,7 @@ pub struct Target<'a> {
     theta: Vec<f64>,
     d: Vec<f64>,
     peak: f64,
+    slopes: Slopes,
     /// Number of steps in [0, π/2); if the grid ends before, differences beyond it count as 0.
     steps: f64,
     /// Scale of the widths that are searched: 1 for all but narrow lobes.
@@ -48,7 +50,7 @@ impl<'a> Target<'a> {
         let d = theta.iter().map(|&t| from.d(t)).collect();
         let half = from.half_angle().unwrap_or(FRAC_PI_2);
         let narrow = (half / NARROW).min(1.0);
-        Self { from, theta, d, peak: from.peak(), steps, narrow }
+        Self { from, theta, d, peak: from.peak(), slopes: Slopes::new(from), steps, narrow }
     }
 
     /// The grid of a measured distribution, over the angles that were measured.
@@ -69,6 +71,11 @@ impl<'a> Target<'a> {
         1e-9 * 110.0 * (tries(to) * self.theta.len()) as f64
     }
 
+    /// The estimated seconds of a search for the least total variation.
+    pub fn seconds_of_variation(&self, to: DistributionKind) -> f64 {
+        1e-9 * 110.0 * (tries(to) * Slopes::NODES) as f64
+    }
+
     /// Root mean square of the difference over the grid.
     pub fn rmse(&self, to: &dyn Isotropic, form: Form) -> f64 {
         let (a, b) = match form {
@@ -86,17 +93,20 @@ impl<'a> Target<'a> {
     pub(super) fn judged(&self, to: Named) -> Result<Replacement, ConvertError> {
         let built = to.build()?;
         let rmse = [Form::Relative, Form::Density].map(|form| self.rmse(&*built, form));
-        if !rmse.iter().all(|rmse| rmse.is_finite()) {
+        let [variation, reflection] =
+            [self.slopes.variation(&*built), self.slopes.reflection(&*built)];
+        if ![rmse[0], rmse[1], variation, reflection].iter().all(|x| x.is_finite()) {
             return Err(ConvertError::Overflow);
         }
-        Ok(Replacement { to, rmse, ends_at: Vec::new() })
+        Ok(Replacement { to, rmse, variation, reflection, ends_at: Vec::new() })
     }
 
     /// The distribution of kind `to` with the same half angle. `shape` is the second parameter of a
     /// kind that has two.
     ///
     /// # Errors
-    /// [`ConvertError`] if either distribution has no such angle, or `shape` is missing.
+    /// [`ConvertError`] if either distribution has no such angle, `shape` is missing, or the kind
+    /// has three parameters.
     pub fn by_half_angle(
         &self,
         to: DistributionKind,
@@ -104,8 +114,10 @@ impl<'a> Target<'a> {
     ) -> Result<Replacement, ConvertError> {
         let named = |y: f64| {
             let mut values = to.at(&vec![y; to.dimension()], self.narrow);
-            if to.dimension() == 2 {
-                values[1] = shape.ok_or(ConvertError::ShapeNeeded(to))?;
+            match to.dimension() {
+                1 => {}
+                2 => values[1] = shape.ok_or(ConvertError::ShapeNeeded(to))?,
+                _ => return Err(ConvertError::OfThree(to)),
             }
             Ok::<_, ConvertError>(Named { kind: to, values })
         };
@@ -144,28 +156,59 @@ impl<'a> Target<'a> {
         form: Form,
         stage: &Stage,
     ) -> Result<Replacement, ConvertError> {
+        self.nearest(to, |to| self.rmse(to, form), stage)
+    }
+
+    /// The distribution of kind `to` with the least total variation of the densities of slopes,
+    /// likewise.
+    ///
+    /// # Errors
+    /// [`ConvertError::Minimiser`] with the message of the minimiser.
+    pub fn by_variation(
+        &self,
+        to: DistributionKind,
+        stage: &Stage,
+    ) -> Result<Replacement, ConvertError> {
+        self.nearest(to, |to| self.slopes.variation(to), stage)
+    }
+
+    fn nearest(
+        &self,
+        to: DistributionKind,
+        distance: impl Fn(&dyn Isotropic) -> f64,
+        stage: &Stage,
+    ) -> Result<Replacement, ConvertError> {
         stage.split(tries(to));
         let error = |point: &[f64]| {
             stage.step();
             let to = to.build(&to.at(point, self.narrow));
-            to.map_or(f64::MAX, |to| self.rmse(&*to, form)).min(f64::MAX)
+            to.map_or(f64::MAX, |to| distance(&*to)).min(f64::MAX)
         };
         // A coarse scan finds the basin of the global minimum among several local ones.
-        let start = minimise::grid(to.dimension(), [scan(to); 2])
+        let start = minimise::grid(&vec![scan(to); to.dimension()])
             .into_iter()
             .map(|point| (error(&point), point))
             .min_by(|a, b| a.0.total_cmp(&b.0))
             .expect("the scan is not empty")
             .1;
         let h = 1.0 / scan(to) as f64;
-        let best = minimise::descend(&start, h, STOP, error).map_err(ConvertError::Minimiser)?;
+        let mut best = start;
+        // In three coordinates a simplex may collapse on the way: it starts once more where it
+        // ended.
+        for _ in 0..if to.dimension() > 2 { 2 } else { 1 } {
+            best = minimise::descend(&best, h, STOP, error).map_err(ConvertError::Minimiser)?;
+        }
         let found = self.judged(Named { kind: to, values: to.at(&best, self.narrow) })?;
         Ok(Replacement { ends_at: to.ends_at(&best), ..found })
     }
 }
 
 fn scan(to: DistributionKind) -> usize {
-    if to.dimension() == 1 { 200 } else { 48 }
+    match to.dimension() {
+        1 => 200,
+        2 => 48,
+        _ => 16,
+    }
 }
 
 /// About how many distributions of a kind a search tries: those of the scan, and about as many as
@@ -173,6 +216,7 @@ fn scan(to: DistributionKind) -> usize {
 fn tries(to: DistributionKind) -> usize {
     match to.dimension() {
         1 => scan(to) + 40,
-        _ => (scan(to) + 1).pow(2) + 200,
+        2 => (scan(to) + 1).pow(2) + 200,
+        _ => (scan(to) + 1).pow(3) + 1000,
     }
 }

@@ -78,3 +78,56 @@ fn refusals() {
     let refused = Target::new(&*flat).by_half_angle(DistributionKind::Gauss, None);
     assert_eq!(refused, Err(ConvertError::NoHalfAngle));
 }
+
+/// The least total variation, and what has it.
+fn by_variation(from: &str, to: DistributionKind) -> Replacement {
+    let built = named(from).build().unwrap();
+    Target::new(&*built).by_variation(to, &Stage::unwatched()).unwrap()
+}
+
+#[test]
+fn two_ggx_follow_a_long_tail_and_not_a_short_one() {
+    // At most what a scan by hand of core, haze and weight had found, and not much less.
+    for (gamma, most) in
+        [("1.6", 0.023), ("1.8", 0.009), ("3", 0.081), ("6", 0.138), ("inf", 0.180)]
+    {
+        let found = by_variation(&format!("student-t:0.2,{gamma}"), DistributionKind::Haze);
+        let near = 0.6 * most..most + 5e-4;
+        assert!(near.contains(&found.variation), "gamma {gamma}: {found:?}");
+    }
+    // Of γ = 2 it is the GGX itself.
+    let found = by_variation("student-t:0.2,2", DistributionKind::Haze);
+    assert!(found.variation < 1e-4, "{found:?}");
+}
+
+#[test]
+fn one_student_t_follows_a_haze_that_is_not_far_from_its_core() {
+    // Roughness r, spread and weight of OpenPBR 1.2: α is r² of the core and (r + (1−r) spread)² of
+    // the haze.
+    let haze = |r: f64, spread: f64, weight: f64| {
+        let wide = r + (1.0 - r) * spread;
+        format!("haze:{},{},{weight}", r * r, wide * wide)
+    };
+    for weight in [0.1, 0.3, 0.5] {
+        let found = by_variation(&haze(0.3, 0.1, weight), DistributionKind::StudentT);
+        assert!((0.002..0.0115).contains(&found.variation), "{weight}: {found:?}");
+    }
+    let found = by_variation(&haze(0.1, 0.5, 0.5), DistributionKind::StudentT);
+    assert!((0.35..0.37).contains(&found.variation), "{found:?}");
+}
+
+#[test]
+fn a_haze_and_an_abc_are_found_again() {
+    for text in ["haze:0.1,0.4,0.3", "abc:300,1.4"] {
+        let from = named(text);
+        for found in [nearest(text, from.kind, Form::Relative), by_variation(text, from.kind)] {
+            for (a, b) in found.to.values.iter().zip(&from.values) {
+                assert!((a / b - 1.0).abs() < 2e-2, "{text} became {}", found.to);
+            }
+            assert!(found.variation < 1e-3, "{text}: {found:?}");
+        }
+    }
+    let built = named("ggx:0.1").build().unwrap();
+    let refused = Target::new(&*built).by_half_angle(DistributionKind::Haze, None);
+    assert_eq!(refused, Err(ConvertError::OfThree(DistributionKind::Haze)));
+}

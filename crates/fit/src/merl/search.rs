@@ -148,7 +148,7 @@ impl Errors<'_> {
     /// `starts`.
     fn search(&self, kind: DistributionKind, starts: &[Vec<f64>]) -> Result<Vec<f64>, MerlError> {
         let dimension = kind.dimension();
-        let grid = minimise::grid(dimension, SCAN);
+        let grid = minimise::grid(&SCAN[..dimension]);
         let errors: Vec<f64> =
             grid.par_iter().map(|place| self.error(kind, place, TOLERANCES[0])).collect();
         let mut basins = basins(&errors, if dimension == 1 { 1 } else { SCAN[1] + 1 });

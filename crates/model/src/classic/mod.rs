@@ -4,10 +4,12 @@
 //! Hyper-Cauchy) are a [`Member`]; the others have a type each. The isotropic ones implement
 //! [`Isotropic`].
 
+mod abc;
 mod albedo;
 mod ashikhmin_shirley;
 mod gauss;
 mod gtr;
+mod haze;
 mod marginal;
 mod member;
 mod radial;
@@ -20,10 +22,12 @@ use core::f64::consts::{FRAC_PI_2, PI};
 use crate::quadrature;
 use crate::student_t::StudentT;
 
+pub use abc::Abc;
 pub use albedo::RadialAlbedo;
 pub use ashikhmin_shirley::AshikhminShirley;
 pub use gauss::Gauss;
 pub use gtr::Gtr;
+pub use haze::Haze;
 pub use marginal::{Across, Beyond, Marginal, MarginalView, Shares, resolved};
 pub use member::Member;
 pub use radial::Radial;
@@ -159,6 +163,12 @@ mod tests {
                 all.push(("gtr", Box::new(Gtr::new(m, gamma).unwrap())));
             }
         }
+        for (core, haze, weight) in [(0.1, 0.4, 0.3), (0.02, 0.8, 0.7), (0.5, 0.1, 0.2)] {
+            all.push(("haze", Box::new(Haze::new(core, haze, weight).unwrap())));
+        }
+        for (b, c) in [(0.5, 30.0), (10.0, 0.5), (50.0, 1.0), (300.0, 2.0), (1e4, 1.4)] {
+            all.push(("abc", Box::new(Abc::new(b, c).unwrap())));
+        }
         for n in [0.5, 1.0, 50.0, 1e4] {
             all.push(("blinn-phong", Box::new(Member::blinn_phong(n).unwrap())));
         }
@@ -238,6 +248,8 @@ mod tests {
             Sawicki::new(f64::INFINITY).unwrap_err(),
             Sawicki::new(f64::NAN).unwrap_err(),
             Gtr::new(-0.1, 2.0).unwrap_err(),
+            Haze::new(0.1, 0.4, -0.1).unwrap_err(),
+            Abc::new(-0.1, 2.0).unwrap_err(),
             Gtr::new(0.1, f64::NAN).unwrap_err(),
             AshikhminShirley::new(-1.0, 1.0).unwrap_err(),
         ] {

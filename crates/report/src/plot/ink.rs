@@ -44,7 +44,7 @@ impl Dash {
 }
 
 // The palette of Okabe and Ito 2008, made for all kinds of colour vision, with its yellow darkened
-// for white paper; and two of Tol's.
+// for white paper; three of Tol's, and a brown.
 const BLUE: Color = [0, 114, 178];
 const SKY: Color = [86, 180, 233];
 const GREEN: Color = [0, 158, 115];
@@ -54,6 +54,8 @@ const PURPLE: Color = [204, 121, 167];
 const OLIVE: Color = [150, 140, 0];
 const WINE: Color = [136, 34, 85];
 const GREY: Color = [110, 110, 110];
+const INDIGO: Color = [51, 34, 136];
+const BROWN: Color = [120, 70, 20];
 
 /// γ from dark to light through the hues of viridis, its yellow darkened.
 const GAMMAS: [Color; 5] =
@@ -96,6 +98,8 @@ impl Key {
                 DistributionKind::StudentT => ORANGE,
                 DistributionKind::HyperCauchy => WINE,
                 DistributionKind::AshikhminShirley => GREY,
+                DistributionKind::Haze => INDIGO,
+                DistributionKind::Abc => BROWN,
             },
             // In ln(γ − 3/2) shapes near the pole are as far apart as those near Beckmann's limit.
             Self::Gamma(gamma) => {
