@@ -4,8 +4,8 @@
 //! cargo run --release -p microfacet-study -- tail docs
 //! ```
 //!
-//! prints the tables of `docs/tail.md` and draws its pictures, `tail.svg` and `tail_gamma.svg`, into
-//! the folder; without one it only prints. Distances are total variations of the densities of
+//! prints the tables of `docs/tail.md` and draws its pictures, `tail.svg` and `tail_gamma.svg`,
+//! into the folder; without one it only prints. Distances are total variations of the densities of
 //! slopes, as `convert --by variation` makes them least.
 
 use std::path::Path;

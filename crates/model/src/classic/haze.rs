@@ -10,8 +10,8 @@ use crate::student_t::StudentT;
 /// Renderers widen the tail of GGX by a second one, most of them as a sum of two reflections, each
 /// with a masking of its own (OpenPBR 1.2, *Specular haze*). Here the normals are mixed, on one
 /// surface: every light and view sees both, so that Λ, which is linear in the density of slopes, is
-/// (1−w) Λ_core + w Λ_haze for all of them. That is the symmetric blend of d'Eon, Bitterli, Weidlich
-/// and Zeltner 2023, *Microfacet Theory for Non-Uniform Heightfields*
+/// (1−w) Λ_core + w Λ_haze for all of them. That is the symmetric blend of d'Eon, Bitterli,
+/// Weidlich and Zeltner 2023, *Microfacet Theory for Non-Uniform Heightfields*
 /// (<https://doi.org/10.1145/3588432.3591486>).
 ///
 /// Its slope density falls like r⁻⁴ at any weight, as that of GGX: the tail is lifted, and not made
@@ -30,8 +30,8 @@ impl Haze {
     /// area, one of `sigma_haze`. The haze may be the narrower.
     ///
     /// # Errors
-    /// [`ClassicError`] unless both roughnesses are in [1e-75, 1e75], so that D is a number, and the
-    /// weight is in [0, 1].
+    /// [`ClassicError`] unless both roughnesses are in [1e-75, 1e75], so that D is a number, and
+    /// the weight is in [0, 1].
     pub fn new(sigma_core: f64, sigma_haze: f64, weight: f64) -> Result<Self, ClassicError> {
         let member = |name, sigma: f64| {
             check((1e-75..=1e75).contains(&sigma), name, sigma, "[1e-75, 1e75]")?;
