@@ -19,12 +19,12 @@ use super::{Context, Result, bail, print, watched};
 /// Fit a Student-t to a measured distribution of normals, or to measured materials.
 ///
 /// --input reads a CSV with the columns angle and D, and fits sigma and gamma; beside them, for
-/// comparison, Beckmann, GGX, two GGX (haze) and the ABC of Loew et al. 2012. --merl reads files
-/// of the MERL database (Matusik et al. 2003; isotropic reflectances, .binary), and fits to each a
-/// Lambert term and a Cook-Torrance lobe of Beckmann, GGX and Student-t: an albedo and an F0
-/// (Schlick) for red, green and blue, a sigma and a gamma for all, with uncorrelated masking. The
-/// error is the sum of |measured - fitted| cos theta_l over that of measured cos theta_l, with view
-/// and light less than 80 degrees from the normal.
+/// comparison, Beckmann, GGX, two GGX (haze) and the ABC of Loew et al. 2012. --merl reads files of
+/// the MERL database (Matusik et al. 2003; isotropic reflectances, .binary), and fits to each a
+/// Lambert term and a Cook-Torrance lobe of each of these: an albedo and an F0 (Schlick) for red,
+/// green and blue, a sigma and a gamma for all, with uncorrelated masking. The error is the sum of
+/// |measured - fitted| cos theta_l over that of measured cos theta_l, with view and light less than
+/// 80 degrees from the normal.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   printf 'theta,D\\n0,10\\n5,8.7\\n10,5.6\\n15,2.9\\n20,1.3\\n25,0.5\\n' | microfacet-bake fit --input - --degrees

@@ -50,6 +50,9 @@ fn what_was_made_is_found_again_and_no_other_fit_is_better() {
         assert_near(&fits.student_t, sigma_gamma, &material, tolerance);
         assert!(fits.student_t.error <= fits.ggx.error);
         assert!(fits.student_t.error <= fits.beckmann.error);
+        assert!(fits.haze.error <= fits.ggx.error);
+        let others = [&fits.haze, &fits.abc];
+        assert!(others.iter().all(|other| other.error > 0.999 * fits.student_t.error), "{fits:?}");
         // On average half of the largest noise is left, less what it takes from the sums.
         let left = fits.student_t.error / (0.5 * material.noise).max(1e-4);
         assert!(left < 1.01, "{left}");
@@ -60,6 +63,18 @@ fn what_was_made_is_found_again_and_no_other_fit_is_better() {
         }
         let simple = matches!(sigma_gamma[1], 2.0 | f64::INFINITY);
         assert_eq!(fits.best() == &fits.student_t, !simple, "{fits:?}");
+    }
+}
+
+/// One surface with the normals of two GGX is told from a Student-t, and its parameters are found.
+#[test]
+fn a_haze_is_found_again() {
+    let made = single("haze:0.05,0.4,0.3", [0.95, 0.72, 0.35], [0.02; 3], 0.02);
+    let fits = fit(&made);
+    assert_eq!(fits.best(), &fits.haze, "{fits:?}");
+    assert!(fits.student_t.error > 2.0 * fits.haze.error, "{fits:?}");
+    for (found, made) in fits.haze.lobe.values.iter().zip([0.05, 0.4, 0.3]) {
+        assert!((found / made - 1.0).abs() < 0.02, "{fits:?}");
     }
 }
 

@@ -53,22 +53,34 @@ pub(super) fn run(files: &[PathBuf], recipe: Option<&Path>) -> Result<()> {
 
 fn head(width: usize) -> String {
     format!(
-        "{:<width$}  {:>8} {:>7}  {:>7} {:>7}  {:>9} {:>7} {:>7}  best\n",
-        "material", "Beckmann", "sigma", "GGX", "sigma", "Student-t", "sigma", "gamma"
+        "{:<width$}  {:>8} {:>7}  {:>7} {:>7}  {:>9} {:>7} {:>7}  {:>6} {:>6} best\n",
+        "material",
+        "Beckmann",
+        "sigma",
+        "GGX",
+        "sigma",
+        "Student-t",
+        "sigma",
+        "gamma",
+        "haze",
+        "abc"
     )
 }
 
-/// The row of a material, and below it the other parameters of its Student-t.
+/// The row of a material, and below it the parameters that have no column.
 fn rows(name: &str, width: usize, fits: &Comparison) -> Result<String, std::fmt::Error> {
-    let Comparison { beckmann, ggx, student_t } = fits;
+    let Comparison { beckmann, ggx, student_t, haze, abc } = fits;
     let [sigma, gamma] = student_t.sigma_gamma().map(short);
     let mut text = format!(
-        "{name:<width$}  {:>8.4} {:>7}  {:>7.4} {:>7}  {:>9.4} {sigma:>7} {gamma:>7}  {}\n",
+        "{name:<width$}  {:>8.4} {:>7}  {:>7.4} {:>7}  {:>9.4} {sigma:>7} {gamma:>7}  {:>6.4} \
+         {:>6.4} {}\n",
         beckmann.error,
         short(beckmann.sigma_gamma()[0]),
         ggx.error,
         short(ggx.sigma_gamma()[0]),
         student_t.error,
+        haze.error,
+        abc.error,
         label(fits.best()),
     );
     let rgb = |[r, g, b]: [f64; 3]| format!("{r:.3} {g:.3} {b:.3}");
@@ -79,6 +91,7 @@ fn rows(name: &str, width: usize, fits: &Comparison) -> Result<String, std::fmt:
         rgb(student_t.lambert),
         ends(&student_t.ends_at)
     )?;
+    writeln!(text, "    {}{}, {}{}", haze.lobe, ends(&haze.ends_at), abc.lobe, ends(&abc.ends_at))?;
     for other in [beckmann, ggx].into_iter().filter(|other| !other.ends_at.is_empty()) {
         // They have one parameter, whatever its name.
         writeln!(text, "    {}:{}", label(other), ends(&["sigma"]))?;
@@ -86,23 +99,30 @@ fn rows(name: &str, width: usize, fits: &Comparison) -> Result<String, std::fmt:
     Ok(text)
 }
 
-/// How often each fit is best, and by what factor Student-t is better.
+/// How often each fit is best, and the factors between its error and that of Student-t.
 fn summary(found: &[Comparison]) -> Result<String, std::fmt::Error> {
     let times = |kind| found.iter().filter(|fits| fits.best().lobe.kind == kind).count();
     let mut text = format!(
-        "\nbest for {}: Student-t {}, GGX {}, Beckmann {}\n(GGX or Beckmann where Student-t gains \
-         less than {} %, or {:e} of the error)\n",
+        "\nbest for {}: Student-t {}, GGX {}, Beckmann {}, haze {}, abc {}\n(GGX or Beckmann where \
+         Student-t gains less than {} %, or {:e} of the error)\n",
         count(found.len(), "material"),
         times(DistributionKind::StudentT),
         times(DistributionKind::TrowbridgeReitz),
         times(DistributionKind::Beckmann),
+        times(DistributionKind::Haze),
+        times(DistributionKind::Abc),
         100.0 * Comparison::EQUAL,
         Comparison::EXACT
     );
     let gains = |of: fn(&Comparison) -> &Fitted| -> Vec<f64> {
         found.iter().map(|fits| fits.gain(of(fits))).collect()
     };
-    let others = [("GGX", gains(|fits| &fits.ggx)), ("Beckmann", gains(|fits| &fits.beckmann))];
+    let others = [
+        ("GGX", gains(|fits| &fits.ggx)),
+        ("Beckmann", gains(|fits| &fits.beckmann)),
+        ("haze", gains(|fits| &fits.haze)),
+        ("abc", gains(|fits| &fits.abc)),
+    ];
     for (name, factors) in others {
         let least = factors.iter().copied().fold(f64::INFINITY, f64::min);
         let most = factors.iter().copied().fold(0.0, f64::max);
@@ -121,6 +141,8 @@ fn label(fitted: &Fitted) -> &'static str {
     match fitted.lobe.kind {
         DistributionKind::Beckmann => "Beckmann",
         DistributionKind::TrowbridgeReitz => "GGX",
+        DistributionKind::Haze => "haze",
+        DistributionKind::Abc => "abc",
         _ => "Student-t",
     }
 }

@@ -1,5 +1,6 @@
 //! Fits Cook–Torrance lobes to the measured materials of the MERL database, as figure 11 of
-//! Ribardière et al. 2017 (doi:10.1111/cgf.13137) does.
+//! Ribardière et al. 2017 (doi:10.1111/cgf.13137) does: of the family, and of two distributions
+//! whose tail is free as well.
 //!
 //! The model of a channel is
 //!
@@ -17,9 +18,9 @@
 //!
 //! over the samples of all channels with view and light less than 80° from the normal; samples that
 //! were not measured are left out. For given σ and γ the error is convex in ρ and F0, and minimised
-//! with a proven bound; σ and γ are found by a scan of every sixth of the difference angles and
-//! every twelfth of the azimuths, then by searches from the deepest basins of the scan with more
-//! samples, and finally with all.
+//! with a proven bound; σ and γ, or what takes their place, are found by a scan of every sixth of
+//! the difference angles and every twelfth of the azimuths, then by searches from the deepest
+//! basins of the scan with more samples, and finally with all.
 //!
 //! Files are read by [`Measured`]; [`MIDDLE`] is the position of values in their cells.
 
@@ -28,6 +29,7 @@ use microfacet_baker::distribution::{DistributionKind, Named};
 mod file;
 mod geometry;
 mod linear;
+mod lobe;
 mod recipe;
 mod samples;
 mod search;
@@ -59,26 +61,31 @@ pub struct Fitted {
 }
 
 impl Fitted {
-    /// σ and γ.
+    /// σ and γ of a member of the family; NaN of another.
     pub fn sigma_gamma(&self) -> [f64; 2] {
-        let gamma = match self.lobe.kind {
-            DistributionKind::Beckmann => f64::INFINITY,
-            DistributionKind::TrowbridgeReitz => 2.0,
-            _ => self.lobe.values[1],
-        };
-        [self.lobe.values[0], gamma]
+        match (self.lobe.kind, &self.lobe.values[..]) {
+            (DistributionKind::Beckmann, &[sigma]) => [sigma, f64::INFINITY],
+            (DistributionKind::TrowbridgeReitz, &[sigma]) => [sigma, 2.0],
+            (DistributionKind::StudentT, &[sigma, gamma]) => [sigma, gamma],
+            _ => [f64::NAN; 2],
+        }
     }
 }
 
-/// The fits of the three distributions to one material.
+/// The fits of five distributions to one material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     /// γ = ∞.
     pub beckmann: Fitted,
     /// γ = 2.
     pub ggx: Fitted,
-    /// σ and γ fitted together; its error is never more than those of the others.
+    /// σ and γ fitted together; its error is never more than those of Beckmann and GGX.
     pub student_t: Fitted,
+    /// The normals of two GGX with one masking: three parameters; its error is never more than that
+    /// of GGX.
+    pub haze: Fitted,
+    /// The distribution of Löw et al. 2012, of two parameters.
+    pub abc: Fitted,
 }
 
 impl Comparison {
@@ -87,17 +94,26 @@ impl Comparison {
     /// Differences of the error below this, several tolerances of the search, count as none.
     pub const EXACT: f64 = 1e-5;
 
-    /// The factor by which the error of another fit exceeds that of the Student-t; 1 where they
-    /// differ by less than [`EXACT`](Self::EXACT).
+    /// The error of another fit over that of the Student-t; 1 where they differ by less than
+    /// [`EXACT`](Self::EXACT).
     pub fn gain(&self, other: &Fitted) -> f64 {
         let (a, b) = (other.error, self.student_t.error);
-        if a <= b + Self::EXACT { 1.0 } else { a / b.max(Self::EXACT) }
+        if (a - b).abs() <= Self::EXACT { 1.0 } else { a / b.max(Self::EXACT) }
     }
 
-    /// The better of Beckmann and GGX if it is as good as the Student-t, else the Student-t.
+    /// The better of Beckmann and GGX if it is as good as the Student-t; else the Student-t, unless
+    /// `haze` or `abc` are better; of equally good ones that of fewer parameters.
     pub fn best(&self) -> &Fitted {
         let simple = if self.beckmann.error < self.ggx.error { &self.beckmann } else { &self.ggx };
         let as_good = self.gain(simple) <= 1.0 + Self::EQUAL;
-        if as_good { simple } else { &self.student_t }
+        let member = if as_good { simple } else { &self.student_t };
+        let mut best = member;
+        for other in [&self.abc, &self.haze] {
+            let gains = other.error < best.error - Self::EXACT;
+            if gains && other.error * (1.0 + Self::EQUAL) < best.error {
+                best = other;
+            }
+        }
+        best
     }
 }

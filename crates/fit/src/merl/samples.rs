@@ -1,13 +1,12 @@
 //! The samples that a fit compares: cells with view and light well above the horizon.
 
-use glam::DVec3;
 use microfacet_core::Masking;
 use microfacet_core::schlick::schlick_weight;
-use microfacet_model::{MicrofacetDistribution, StudentT};
 use rayon::prelude::*;
 
 use super::LIMIT_DEGREES;
 use super::file::{DIMENSIONS, MIDDLE, Measured, angles, index};
+use super::lobe::Lobe;
 
 /// Steps of the table of masking over the square root of the angle, between which Λ is linear:
 /// where γ is close to 3/2, Λ bends at the normal. The error of G1 is below 2e-6 for
@@ -21,11 +20,6 @@ fn place(theta: f64) -> f64 {
 
 fn angle(place: f64) -> f64 {
     LIMIT_DEGREES.to_radians() * (place / STEPS as f64).powi(2)
-}
-
-fn direction(theta: f64) -> DVec3 {
-    let (sin, cos) = theta.sin_cos();
-    DVec3::new(sin, 0.0, cos)
 }
 
 /// The samples, the same for all files: indices and geometry.
@@ -87,8 +81,8 @@ impl Samples {
     }
 
     /// D G1(v) G1(l)/(4 v·n l·n) of each sample: the specular reflectance for F = 1, in 1/sr.
-    pub(super) fn specular(&self, lobe: &StudentT) -> Vec<f64> {
-        let d = |i: usize| lobe.d(direction(angles([i, 0, 0], MIDDLE).theta_h));
+    pub(super) fn specular(&self, lobe: &Lobe) -> Vec<f64> {
+        let d = |i: usize| lobe.d(angles([i, 0, 0], MIDDLE).theta_h);
         let d: Vec<f64> = (0..DIMENSIONS[0]).map(d).collect();
         let masking = MaskingTable::new(lobe);
         let one = |i: usize| {
@@ -104,8 +98,8 @@ impl Samples {
 struct MaskingTable(Vec<f64>);
 
 impl MaskingTable {
-    fn new(lobe: &StudentT) -> Self {
-        Self((0..=STEPS).map(|i| lobe.lambda(direction(angle(i as f64)))).collect())
+    fn new(lobe: &Lobe) -> Self {
+        Self(lobe.lambdas(|i| angle(i as f64), STEPS))
     }
 
     /// G1 = 1/(1 + Λ) at a coordinate, see [`place`].
@@ -118,7 +112,11 @@ impl MaskingTable {
 
 #[cfg(test)]
 mod tests {
+    use microfacet_model::classic::{Abc, Haze, Isotropic, Radial};
+    use microfacet_model::{MicrofacetDistribution, StudentT};
+
     use super::super::file::cell;
+    use super::super::lobe::direction;
     use super::*;
 
     #[test]
@@ -144,7 +142,7 @@ mod tests {
     fn the_table_of_masking_is_that_of_the_model() {
         let worst = |sigma: f64, gamma: f64| {
             let lobe = StudentT::new(sigma, gamma).unwrap();
-            let table = MaskingTable::new(&lobe);
+            let table = MaskingTable::new(&Lobe::StudentT(lobe));
             let places = (0..=5 * STEPS).map(|i| i as f64 / 5.0).chain([1e-9, 1e-3, 0.5]);
             places.map(|x| (table.g1(x) - lobe.g1(direction(angle(x)))).abs()).fold(0.0, f64::max)
         };
@@ -161,12 +159,32 @@ mod tests {
     fn specular_is_that_of_vectors() {
         let samples = Samples::new([6, 12]);
         let lobe = StudentT::new(0.4, 2.6).unwrap();
-        let found = samples.specular(&lobe);
+        let found = samples.specular(&Lobe::StudentT(lobe));
         for i in (0..samples.len()).step_by(501) {
             let [v, l] = angles(cell(samples.index[i]), MIDDLE).directions();
             let m = (v + l).normalize();
             let expected = lobe.d(m) * lobe.g1(v) * lobe.g1(l) / (4.0 * v.z * l.z);
             assert!((found[i] / expected - 1.0).abs() < 1e-5, "{i}");
+        }
+    }
+
+    /// Λ of the others by the quadrature that serves any distribution.
+    #[test]
+    fn the_tables_of_other_lobes_are_those_of_their_distributions() {
+        let off = |lobe: &Lobe, of: &dyn Isotropic| {
+            let (table, model) = (MaskingTable::new(lobe), Radial::new(of));
+            let places = (0..=STEPS / 3).map(|i| 3.0 * i as f64 + 0.4);
+            let off = |x| table.g1(x) - model.g1(direction(angle(x)));
+            places.map(off).fold(0.0, |a: f64, b: f64| a.max(b.abs()))
+        };
+        for [core, wide, weight] in [[0.02, 0.8, 0.5], [0.1, 0.4, 0.3], [0.3, 0.3, 1.0]] {
+            let worst =
+                off(&Lobe::haze(core, wide, weight), &Haze::new(core, wide, weight).unwrap());
+            assert!(worst < 2e-6, "{core} {wide} {weight}: {worst}");
+        }
+        for [b, c] in [[1e4, 1.4], [300.0, 0.6], [20.0, 3.3], [0.5, 20.0]] {
+            let worst = off(&Lobe::abc(b, c), &Abc::new(b, c).unwrap());
+            assert!(worst < 1e-4, "{b} {c}: {worst}");
         }
     }
 }

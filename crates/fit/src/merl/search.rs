@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use super::file::{Measured, MerlError};
 use super::linear::{Linear, Problem};
+use super::lobe::Lobe;
 use super::samples::Samples;
 use super::{Comparison, Fitted};
 use crate::minimise::{self, Stop};
@@ -17,17 +18,25 @@ use crate::minimise::{self, Stop};
 /// Steps of the scan along σ, which is evenly spaced in its logarithm over five decades, and along
 /// s = 1/(γ−1).
 const SCAN: [usize; 2] = [40, 12];
+/// The same of a haze: its core, how much wider the haze is, and its weight.
+const HAZE_SCAN: [usize; 3] = [20, 8, 5];
 /// Strides of the cells of θ_d and φ_d in the first, second and last search.
 const STRIDES: [[usize; 2]; 3] = [[6, 12], [2, 4], [1, 1]];
 /// About how many lobes are tried in each search, for progress only.
-const TRIES: [usize; 3] = [1000, 110, 60];
+const TRIES: [usize; 3] = [3200, 240, 130];
 /// Tolerances of the error in a scan, the first search and the later ones.
 const TOLERANCES: [f64; 3] = [1e-3, 1e-5, 1e-6];
 /// Most basins of a scan that are searched.
 const BASINS: usize = 3;
 
-const KINDS: [DistributionKind; 3] =
-    [DistributionKind::Beckmann, DistributionKind::TrowbridgeReitz, DistributionKind::StudentT];
+/// Beckmann and GGX first, since they are starting points for the Student-t.
+const KINDS: [DistributionKind; 5] = [
+    DistributionKind::Beckmann,
+    DistributionKind::TrowbridgeReitz,
+    DistributionKind::StudentT,
+    DistributionKind::Haze,
+    DistributionKind::Abc,
+];
 
 /// Fits to any number of files, with the geometry of their samples prepared once.
 pub struct Fitter {
@@ -47,7 +56,7 @@ const fn stop(tolerance: f64) -> Stop {
 
 impl Fitter {
     /// The estimated seconds of a fit on two cores.
-    pub const SECONDS: f64 = 4.4;
+    pub const SECONDS: f64 = 11.0;
 
     /// Whether [`fit`](Self::fit) can be made of a measurement.
     ///
@@ -74,18 +83,21 @@ impl Fitter {
             stage: &stage,
         });
         all.problem.check()?;
-        // The best Beckmann and GGX are starting points for the Student-t.
         let mut starts: Vec<Vec<f64>> = Vec::new();
         let mut found: Vec<(Vec<f64>, Fitted)> = Vec::new();
         for kind in KINDS {
-            let start = few.search(kind, &starts)?;
-            starts.push(on_square(kind, &start));
+            let start = few.search(kind, if is_member(kind) { &starts } else { &[] })?;
+            if is_member(kind) {
+                starts.push(on_square(kind, &start));
+            }
             let place = more.descend(kind, &start, 0.01, TOLERANCES[2])?;
             let place = all.descend(kind, &place, 0.002, TOLERANCES[2])?;
-            found.push((on_square(kind, &place), all.fitted(kind, &place)));
+            found.push((place.clone(), all.fitted(kind, &place)));
         }
-        let [(at_beckmann, beckmann), (at_ggx, ggx), (_, mut student_t)] =
-            found.try_into().expect("three kinds");
+        let [beckmann, ggx, student_t, haze, abc] = found.try_into().expect("five kinds");
+        let [at_beckmann, at_ggx] = [&beckmann, &ggx].map(|(at, of)| on_square(of.lobe.kind, at));
+        let [beckmann, ggx, mut student_t, mut haze, abc] =
+            [beckmann, ggx, student_t, haze, abc].map(|(_, fitted)| fitted);
         // Beckmann and GGX are members of the family, so that the best Student-t is not worse:
         // where the search found a worse one, it ended in another basin.
         for (at, other) in [(at_ggx, &ggx), (at_beckmann, &beckmann)] {
@@ -97,8 +109,19 @@ impl Fitter {
                 student_t = if near.error < other.error { near } else { same };
             }
         }
-        Ok(Comparison { beckmann, ggx, student_t })
+        // Likewise a haze whose two lobes are one.
+        if ggx.error < haze.error {
+            let sigma = ggx.lobe.values[0];
+            let lobe = Named { kind: DistributionKind::Haze, values: vec![sigma, sigma, 0.0] };
+            haze = Fitted { lobe, ..ggx.clone() };
+        }
+        Ok(Comparison { beckmann, ggx, student_t, haze, abc })
     }
+}
+
+/// Whether a kind is of the family, and has a place on the square of its members.
+fn is_member(kind: DistributionKind) -> bool {
+    !matches!(kind, DistributionKind::Haze | DistributionKind::Abc)
 }
 
 /// The coordinates of a lobe on the square that [`DistributionKind::at`] maps to Student-ts, from
@@ -113,14 +136,19 @@ fn shape(kind: DistributionKind) -> f64 {
 }
 
 /// The distribution at searched coordinates, by name and as a lobe.
-fn at(kind: DistributionKind, place: &[f64]) -> (Named, StudentT) {
+fn at(kind: DistributionKind, place: &[f64]) -> (Named, Lobe) {
+    if !is_member(kind) {
+        let named = Named { kind, values: kind.at(place, 1.0) };
+        let lobe = Lobe::of(&named);
+        return (named, lobe);
+    }
     let mut values = DistributionKind::StudentT.at(&on_square(kind, place), 1.0);
     if place.len() == 1 {
         values[1] = shape(kind);
     }
     let lobe = StudentT::new(values[0], values[1]).expect("the square has no others");
     values.truncate(place.len());
-    (Named { kind, values }, lobe)
+    (Named { kind, values }, Lobe::StudentT(lobe))
 }
 
 struct Errors<'a> {
@@ -135,7 +163,7 @@ impl Errors<'_> {
         samples.len() / 1000
     }
 
-    fn solve(&self, lobe: &StudentT, tolerance: f64) -> (f64, [Linear; 3]) {
+    fn solve(&self, lobe: &Lobe, tolerance: f64) -> (f64, [Linear; 3]) {
         self.stage.steps(Self::size(self.samples));
         self.problem.solve(&self.samples.specular(lobe), tolerance)
     }
@@ -148,10 +176,14 @@ impl Errors<'_> {
     /// `starts`.
     fn search(&self, kind: DistributionKind, starts: &[Vec<f64>]) -> Result<Vec<f64>, MerlError> {
         let dimension = kind.dimension();
-        let grid = minimise::grid(&SCAN[..dimension]);
+        let grid = minimise::grid(if dimension == 3 { &HAZE_SCAN } else { &SCAN[..dimension] });
         let errors: Vec<f64> =
             grid.par_iter().map(|place| self.error(kind, place, TOLERANCES[0])).collect();
-        let mut basins = basins(&errors, if dimension == 1 { 1 } else { SCAN[1] + 1 });
+        let mut basins = match dimension {
+            1 => basins(&errors, 1),
+            2 => basins(&errors, SCAN[1] + 1),
+            _ => best_of(&errors),
+        };
         basins.truncate(BASINS);
         let places = basins.into_iter().map(|i| &grid[i]);
         let places: Vec<_> =
@@ -182,10 +214,10 @@ impl Errors<'_> {
     }
 
     fn fitted(&self, kind: DistributionKind, place: &[f64]) -> Fitted {
-        let (lobe, student_t) = at(kind, place);
-        let (error, linear) = self.solve(&student_t, 0.1 * TOLERANCES[2]);
+        let (named, lobe) = at(kind, place);
+        let (error, linear) = self.solve(&lobe, 0.1 * TOLERANCES[2]);
         Fitted {
-            lobe,
+            lobe: named,
             f0: linear.map(|linear| linear.f0),
             lambert: linear.map(|linear| PI * linear.lambert),
             error,
@@ -209,6 +241,13 @@ fn basins(errors: &[f64], width: usize) -> Vec<usize> {
     basins
 }
 
+/// All points of a scan, best first.
+fn best_of(errors: &[f64]) -> Vec<usize> {
+    let mut all: Vec<usize> = (0..errors.len()).collect();
+    all.sort_by(|&a, &b| errors[a].total_cmp(&errors[b]));
+    all
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -225,7 +264,7 @@ mod tests {
     #[test]
     fn both_ends_of_a_search_are_said_to_be() {
         for (end, start) in [(0.0, 0.1), (1.0, 0.9)] {
-            for kind in KINDS {
+            for kind in KINDS.into_iter().filter(|kind| is_member(*kind)) {
                 let mut at = vec![start; kind.dimension()];
                 // The sequence of searches in `search` and `fit`.
                 for (h, tolerance) in [(0.2, TOLERANCES[1]), (0.01, 1e-6), (0.002, 1e-6)] {
@@ -241,9 +280,13 @@ mod tests {
     #[test]
     fn kinds_have_their_places_on_the_square() {
         for (kind, gamma) in [(KINDS[0], f64::INFINITY), (KINDS[1], 2.0)] {
-            let (named, lobe) = at(kind, &[0.6]);
+            let student_t = |(named, lobe)| match lobe {
+                Lobe::StudentT(lobe) => (named, lobe),
+                _ => unreachable!("a member"),
+            };
+            let (named, lobe) = student_t(at(kind, &[0.6]));
             assert_eq!((named.values.len(), lobe.shape().gamma()), (1, gamma));
-            let (named, same) = at(KINDS[2], &on_square(kind, &[0.6]));
+            let (named, same) = student_t(at(KINDS[2], &on_square(kind, &[0.6])));
             assert!((same.shape().s() - lobe.shape().s()).abs() < 1e-15, "{named}");
             assert_eq!(same.sigma_x(), lobe.sigma_x());
         }
@@ -258,7 +301,7 @@ mod tests {
         let lobe = StudentT::new(0.2, 1.7).unwrap();
         let mut measured = Measured { channels: [0, 1, 2].map(|_| vec![-1.0; CELLS]) };
         for samples in &fitter.levels {
-            for (i, specular) in samples.specular(&lobe).into_iter().enumerate() {
+            for (i, specular) in samples.specular(&Lobe::StudentT(lobe)).into_iter().enumerate() {
                 for (c, channel) in measured.channels.iter_mut().enumerate() {
                     // Off by up to a fifth, without order.
                     let off = 0.2 * (i as f64 * (1.0 + c as f64)).sin();
