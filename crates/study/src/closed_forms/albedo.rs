@@ -24,7 +24,7 @@ fn place(sigma: f64, mu: f64, s: f64) -> [f64; 4] {
 /// All terms of degree 4 in σ, μ and ρ (at most once) and 5 with s (at most twice). What is lost
 /// has σ, so that a smooth surface loses nothing.
 pub(super) fn terms() -> Terms {
-    let mut terms = Terms { kept: Vec::new(), lost: Vec::new() };
+    let mut terms = Terms::share(Vec::new(), Vec::new());
     for sigma in 0..=4 {
         for rho in 0..=1 {
             for mu in 0..=4 {

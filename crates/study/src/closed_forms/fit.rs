@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 
 use super::cholesky::Cholesky;
-use super::share::{Rows, Samples, Terms};
+use super::share::{Rows, Samples, Terms, Whole};
 
 /// A share that was fitted, the weights of the samples at which it is the best, and its largest
 /// error at them.
@@ -105,6 +105,14 @@ pub(super) struct Start {
     weights: Vec<f64>,
 }
 
+impl Start {
+    /// From known coefficients, every sample as important.
+    pub(super) fn at(coefficients: Vec<f64>, samples: &Samples) -> Self {
+        let count = samples.wanted.len();
+        Self { coefficients, weights: vec![1.0 / count as f64; count] }
+    }
+}
+
 impl Fit {
     /// The start without the terms at some places.
     fn without(&self, places: &[usize]) -> Start {
@@ -121,7 +129,7 @@ impl Fit {
 
     /// Numbers that the form needs: one coefficient of a quotient is 1.
     pub(super) fn numbers(&self) -> usize {
-        self.terms.len() - usize::from(!self.terms.lost.is_empty())
+        self.terms.len() - usize::from(self.terms.whole != Whole::One)
     }
 
     /// Its value in double precision, without the limit.
@@ -183,7 +191,9 @@ fn first_guess(rows: &Rows, samples: &Samples) -> Vec<f64> {
             rows.normal_equations(&weights, |i| Some(([samples.wanted[i], wholes[i]], 0.0)));
         let mut mean = vec![0.0; n];
         for ((row, whole), weight) in rows.iter().zip(&wholes).zip(&weights) {
-            mean.iter_mut().zip(row).for_each(|(mean, x)| *mean += weight * x / whole);
+            for (k, (mean, x)) in mean.iter_mut().zip(row).enumerate() {
+                *mean += rows.of_whole(k) * weight * x / whole;
+            }
         }
         for a in 0..n {
             for b in 0..=a {
@@ -227,17 +237,27 @@ mod tests {
     #[test]
     fn a_quotient_of_its_own_terms_is_found() {
         let samples = samples(|x| (0.2 * x + x * x) / (0.3 + 0.1 * x + 1.5 * x * x));
-        let terms = Terms { kept: powers(1..=2), lost: powers(0..=2) };
+        let terms = Terms::share(powers(1..=2), powers(0..=2));
         let fit = fit(&terms, &samples, None, 100);
         assert!(fit.error < 1e-9 && fit.numbers() == 4, "{}", fit.error);
         // Without the one that is worth least, it is met no more.
         assert!(fit.smaller(&samples, 1, 5, 50).unwrap().error > 1e-6);
     }
 
+    #[test]
+    fn a_quotient_with_terms_of_its_own_above_and_below_is_found() {
+        let samples = samples(|x| (0.2 + x) / (1.0 + 0.1 * x + 2.5 * x * x));
+        let terms = Terms::quotient(powers(0..=1), powers(0..=2));
+        let fit = fit(&terms, &samples, None, 100);
+        assert!(fit.error < 1e-9 && fit.numbers() == 4, "{}", fit.error);
+        let scaled: Vec<f64> = fit.coefficients.iter().map(|x| x / fit.coefficients[2]).collect();
+        assert!(scaled.iter().zip([0.2, 1.0, 1.0, 0.1, 2.5]).all(|(x, y)| (x - y).abs() < 1e-6));
+    }
+
     /// The best line for x² on [0, 1] errs by 1/8.
     #[test]
     fn a_polynomial_errs_as_little_as_it_can() {
-        let terms = Terms { kept: powers(0..=1), lost: Vec::new() };
+        let terms = Terms::polynomial(powers(0..=1));
         let fit = fit(&terms, &samples(|x| x * x), None, 200);
         assert!((fit.error - 0.125).abs() < 1e-3 && fit.numbers() == 2, "{}", fit.error);
     }

@@ -164,7 +164,7 @@ mod tests {
     #[test]
     fn the_text_is_the_polynomial() {
         let kept = vec![[1, 0, 0, 0], [1, 0, 0, 2], [3, 1, 0, 0]];
-        let terms = Terms { kept, lost: vec![[0, 0, 0, 0]] };
+        let terms = Terms::share(kept, vec![[0, 0, 0, 0]]);
         let form = Form::new(&terms, &[1.0, -0.5, 2.0, 0.25]);
         let names = ["x", "y", "z", "s"];
         let lines =

@@ -73,7 +73,7 @@ const ALBEDO: [[&str; 2]; 8] = [
 ];
 
 fn terms([kept, lost]: &[&str; 2]) -> Terms {
-    Terms { kept: read(kept), lost: read(lost) }
+    Terms::share(read(kept), read(lost))
 }
 
 /// All forms of G1.

@@ -33,7 +33,7 @@ pub(super) fn terms(degree: u8) -> Terms {
     let all = |c: u8| (0..4).map(move |s| [c, degree - c, s, 0]);
     let kept = (1..=degree).flat_map(all).collect();
     let lost = (0..=degree).flat_map(all).filter(|term| term[0] < degree || term[2] < 3).collect();
-    Terms { kept, lost }
+    Terms::share(kept, lost)
 }
 
 /// The z that are fitted: the share q ∈ (0, 1) of z + 1, and of z and the area at grazing, which
@@ -60,7 +60,7 @@ pub(super) fn samples(shapes: usize, views: usize) -> Samples {
 /// factor is the best of a few that were tried.
 pub(super) fn plain(samples: &Samples) -> (Terms, Samples) {
     let all = |q: u8| (0..5).map(move |s| [q, s, 0, 0]);
-    let terms = Terms { kept: (0..5).flat_map(all).collect(), lost: Vec::new() };
+    let terms = Terms::polynomial((0..5).flat_map(all).collect());
     let places = samples.places.iter().map(|[c, t, s, _]| plain_place(c / t, *s));
     (terms, Samples { places: places.collect(), wanted: samples.wanted.clone() })
 }

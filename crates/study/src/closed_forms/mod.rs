@@ -4,7 +4,8 @@
 //! `cargo run --release -p microfacet-study -- closed_forms` prints the tables of "Without tables"
 //! in `docs/shaders.md`, and the lines that `closed.wgsl` and `closed.h` of the crate
 //! `microfacet-export` have of the forms chosen. `closed_forms search` searches for terms of forms,
-//! which takes some minutes.
+//! which takes some minutes. `closed_forms engines [GAMMA]` prints the errors of quotients that
+//! shaders of engines have for E, and fits them to the model (`docs/engines.md`).
 //!
 //! A number is a coefficient: one of each quotient is 1 or −1, and powers are whole. The rivals are
 //! eq. 22–23 of Ribardière et al. 2017 (<https://doi.org/10.1111/cgf.13137>), which have 31 numbers,
@@ -18,6 +19,7 @@ mod forms;
 mod masking;
 mod measure;
 mod search;
+mod shaders;
 mod share;
 
 use microfacet_model::ParameterError;
@@ -45,6 +47,9 @@ fn fitted_albedo(terms: &Terms, samples: &Samples) -> Fit {
 
 /// Runs the study that the module describes.
 pub fn run(arguments: &[String]) -> Outcome {
+    if arguments.first().is_some_and(|argument| argument == "engines") {
+        return shaders::run(arguments.get(1).map_or(Ok(2.0), |gamma| gamma.parse())?);
+    }
     let (masking_samples, albedo_samples) = (masking_samples(), albedo_samples()?);
     if arguments.first().is_some_and(|argument| argument == "search") {
         let effort = Effort { tries: 40, rounds: 80, singly: 40 };

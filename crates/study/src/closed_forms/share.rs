@@ -1,18 +1,43 @@
 //! A share kept/(kept + lost) of two polynomials: a rational function in [0, 1] wherever both are
 //! positive, here also limited to 1 where `lost` is slightly negative. A share of which no term is
-//! lost stands for the polynomial itself.
+//! lost stands for the polynomial itself; and a quotient kept/lost has terms of its own above and
+//! below, as forms of others do.
 
 /// Powers of the variables of a monomial.
 pub(super) type Term = [u8; 4];
+
+/// What the terms that are kept are divided by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Whole {
+    /// By 1: a polynomial.
+    One,
+    /// By the sum of kept and lost terms: a share.
+    Both,
+    /// By the lost terms alone: a quotient.
+    Lost,
+}
 
 /// Which monomials a share has.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Terms {
     pub(super) kept: Vec<Term>,
     pub(super) lost: Vec<Term>,
+    pub(super) whole: Whole,
 }
 
 impl Terms {
+    pub(super) fn share(kept: Vec<Term>, lost: Vec<Term>) -> Self {
+        Self { kept, lost, whole: Whole::Both }
+    }
+
+    pub(super) fn polynomial(kept: Vec<Term>) -> Self {
+        Self { kept, lost: Vec::new(), whole: Whole::One }
+    }
+
+    pub(super) fn quotient(over: Vec<Term>, under: Vec<Term>) -> Self {
+        Self { kept: over, lost: under, whole: Whole::Lost }
+    }
+
     pub(super) fn all(&self) -> impl Iterator<Item = &Term> {
         self.kept.iter().chain(&self.lost)
     }
@@ -27,7 +52,8 @@ impl Terms {
             let left = terms.iter().enumerate().filter(|(i, _)| !places.contains(&(first + i)));
             left.map(|(_, term)| *term).collect()
         };
-        Self { kept: left(&self.kept, 0), lost: left(&self.lost, self.kept.len()) }
+        let (kept, lost) = (left(&self.kept, 0), left(&self.lost, self.kept.len()));
+        Self { kept, lost, whole: self.whole }
     }
 }
 
@@ -42,6 +68,7 @@ pub(super) struct Samples {
 pub(super) struct Rows {
     pub(super) width: usize,
     kept: usize,
+    whole: Whole,
     values: Vec<f64>,
 }
 
@@ -60,16 +87,25 @@ impl Rows {
             let first = values.len();
             values.extend(row);
             let sum: f64 = values[first..].iter().sum();
-            if !terms.lost.is_empty() {
+            if terms.whole != Whole::One {
                 values[first..].iter_mut().for_each(|x| *x /= sum);
             }
         }
-        Self { width: terms.len(), kept: terms.kept.len(), values }
+        Self { width: terms.len(), kept: terms.kept.len(), whole: terms.whole, values }
     }
 
     /// Whether this is a polynomial, the whole being 1.
     pub(super) fn is_plain(&self) -> bool {
-        self.kept == self.width
+        self.whole == Whole::One
+    }
+
+    /// By how much a term changes the whole, as a factor on it.
+    pub(super) fn of_whole(&self, term: usize) -> f64 {
+        match self.whole {
+            Whole::One => 0.0,
+            Whole::Both => 1.0,
+            Whole::Lost => f64::from(term >= self.kept),
+        }
     }
 
     pub(super) fn iter(&self) -> impl Iterator<Item = &[f64]> {
@@ -81,8 +117,13 @@ impl Rows {
         let of = |row: &[f64]| {
             let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
             let kept = dot(&row[..self.kept], &x[..self.kept]);
-            let whole = kept + dot(&row[self.kept..], &x[self.kept..]);
-            if self.is_plain() { [kept, 1.0] } else { [kept / whole, whole] }
+            let lost = dot(&row[self.kept..], &x[self.kept..]);
+            let whole = match self.whole {
+                Whole::One => 1.0,
+                Whole::Both => kept + lost,
+                Whole::Lost => lost,
+            };
+            [kept / whole, whole]
         };
         self.iter().map(of).collect()
     }
@@ -99,7 +140,7 @@ impl Rows {
         for (i, row) in self.iter().enumerate() {
             let Some(([share, whole], error)) = of(i) else { continue };
             for (k, (j, row)) in j.iter_mut().zip(row).enumerate() {
-                let of_whole = if self.is_plain() { 0.0 } else { share };
+                let of_whole = self.of_whole(k) * share;
                 *j = (if k < self.kept { 1.0 - of_whole } else { -of_whole }) * row / whole;
             }
             for a in 0..n {
