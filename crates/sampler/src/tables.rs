@@ -7,7 +7,9 @@ use alloc::vec::Vec;
 
 use microfacet_core::shape::s_of_gamma;
 use microfacet_core::{Roughness, Skew};
-use microfacet_tables::{Kind, LoadError, LobeSpec, MaterialEntry, Provenance, Table, decode};
+use microfacet_tables::{
+    Interval, Kind, LoadError, LobeSpec, MaterialEntry, Provenance, Table, decode,
+};
 
 use crate::bind_error::BindError;
 use crate::error::MaterialError;
@@ -258,7 +260,8 @@ impl Tables {
         Ellipsoid::new(self.student_t(1.0, gamma)?, skew)
     }
 
-    /// The lobe of a named material of the set's recipe, whatever its distribution.
+    /// The lobe of a named material of the set's recipe, whatever its distribution: the core of one
+    /// with [haze](Self::material_haze).
     ///
     /// A range in the recipe is taken at its middle, of σ and of s = 1/(γ−1). At the hits of a
     /// texture use [`StudentT::with_roughness`] or [`family`](Self::family), for single values
@@ -268,7 +271,22 @@ impl Tables {
     /// [`BindError::NoSuchMaterial`] naming those that exist, or what [`lobe`](Self::lobe) and
     /// [`ellipsoid`](Self::ellipsoid) report.
     pub fn material(&self, name: &str) -> Result<Lobe, BindError> {
-        let lobe = &self.entry(name)?.lobe;
+        self.lobe_of(&self.entry(name)?.lobe)
+    }
+
+    /// The lobe of the haze around a named material, and its weight in [0, 1]; `None` for a
+    /// material without haze. Ranges are taken at their middle, as by
+    /// [`material`](Self::material), which has the core. [`bsdf`](Self::bsdf) makes a
+    /// [`Haze`](crate::Haze) of both.
+    ///
+    /// # Errors
+    /// What [`material`](Self::material) reports.
+    pub fn material_haze(&self, name: &str) -> Result<Option<(Lobe, f32)>, BindError> {
+        let Some(haze) = &self.entry(name)?.haze else { return Ok(None) };
+        Ok(Some((self.lobe_of(&haze.lobe)?, middle(haze.weight))))
+    }
+
+    fn lobe_of(&self, lobe: &LobeSpec) -> Result<Lobe, BindError> {
         match (lobe.theta, &lobe.distribution) {
             (Some(theta), _) => {
                 let skew = Skew::new(lobe.sigma(), theta)?;
@@ -300,4 +318,9 @@ impl Tables {
             BindError::NoSuchMaterial { name: name.into(), known }
         })
     }
+}
+
+/// The middle of a share of light.
+pub(crate) fn middle(share: Interval) -> f32 {
+    (0.5 * (share.min + share.max)) as f32
 }

@@ -10,8 +10,9 @@ use microfacet_sampler::lobe::Smooth;
 use microfacet_sampler::{
     AnyBsdf, BindError, Bsdf, BsdfSample, BsdfSettings, Compensation, Conductor, ConductorFresnel,
     Dielectric, Event, Ggx, Haze, Lobe, Masking, Metal, MicrofacetDistribution, Plastic,
-    Retroreflective, Skew, Tables, Transport,
+    Retroreflective, Skew, StandIn, Tables, Transport,
 };
+use microfacet_tables::{Haze as HazeEntry, LobeSpec, MaterialEntry, Provenance, Reflectance};
 
 const RADIANCE: Transport = Transport::Radiance;
 
@@ -366,4 +367,65 @@ fn what_the_parts_refuse_the_pair_refuses() {
         // It prints and is cloned as a whole.
         assert_eq!(format!("{:?}", bsdf.clone()), format!("{bsdf:?}"), "{name}");
     }
+}
+
+/// The materials of a set by name: core, haze and light that goes back, ranges at their middle.
+#[test]
+fn named_materials_have_their_haze_and_send_light_back() {
+    let plain = MaterialEntry {
+        name: "plain".into(),
+        lobe: LobeSpec::student_t([0.1; 2], 2.0),
+        haze: None,
+        retroreflection: MaterialEntry::SPECULAR,
+        masking: Some(Masking::Uncorrelated),
+        fresnel: Some(Reflectance::Schlick([0.9, 0.5, 0.2])),
+    };
+    let around = |sigma| {
+        let lobe = LobeSpec::student_t([sigma; 2], 2.0);
+        Some(HazeEntry { weight: [0.2, 0.4].into(), lobe })
+    };
+    let named = |name: &str, haze, back: [f64; 2]| MaterialEntry {
+        name: name.into(),
+        haze,
+        retroreflection: back.into(),
+        ..plain.clone()
+    };
+    let glass = Some(Reflectance::Dielectric([1.5; 2].into()));
+    let materials = vec![
+        plain.clone(),
+        named("hazy", around(0.45), [0.0; 2]),
+        named("both", around(0.45), [0.4, 0.8]),
+        MaterialEntry { fresnel: glass, ..named("hazy glass", around(0.45), [0.0; 2]) },
+        MaterialEntry { fresnel: glass, ..named("glass sent back", None, [0.5; 2]) },
+    ];
+    let set = Provenance { materials, ..Provenance::default() };
+    let set = Tables::from_tables(set, Vec::new()).unwrap();
+    let of = |name| set.bsdf(name, Compensation::None, StandIn::Refused);
+    let settings = BsdfSettings::new().with_masking(Masking::Uncorrelated);
+    let fresnel = ConductorFresnel::schlick([0.9, 0.5, 0.2]).unwrap();
+    let part = |alpha: f32| Conductor::new(Ggx::new(alpha).unwrap(), fresnel, settings).unwrap();
+    let (core, haze) = (part(0.1), part(0.45));
+    let (v, l) = (direction(0.7, 0.3), direction(0.6, 2.9));
+    let f = |bsdf: &AnyBsdf, v| bsdf.eval(v, l, RADIANCE);
+    let mixed = |v: Vec3| {
+        let (a, b) = (core.eval(v, l, RADIANCE), haze.eval(v, l, RADIANCE));
+        [0, 1, 2].map(|i| 0.7 * a[i] + 0.3 * b[i])
+    };
+    let close =
+        |a: [f32; 3], b: [f32; 3]| a.into_iter().zip(b).all(|(a, b)| (a / b - 1.0).abs() < 1e-5);
+    assert_eq!(f(&of("plain").unwrap(), v), core.eval(v, l, RADIANCE));
+    let hazy = of("hazy").unwrap();
+    assert!(matches!(hazy, AnyBsdf::Haze(_)) && close(f(&hazy, v), mixed(v)), "{hazy:?}");
+    let both = of("both").unwrap();
+    let back = [0, 1, 2].map(|i| 0.4 * mixed(v)[i] + 0.6 * mixed(turned(v))[i]);
+    assert!(close(f(&both, v), back), "{both:?}");
+    assert!(matches!(of("hazy glass"), Ok(AnyBsdf::Haze(_))));
+    let why = of("glass sent back").unwrap_err();
+    assert!(matches!(why, BindError::NoRetroreflection { transmits: true }), "{why}");
+    // The lobes themselves.
+    assert!(matches!(set.material("hazy").unwrap(), Lobe::Ggx(ggx) if ggx.alpha() == [0.1; 2]));
+    let (lobe, weight) = set.material_haze("hazy").unwrap().unwrap();
+    assert!(matches!(lobe, Lobe::Ggx(ggx) if ggx.alpha() == [0.45; 2]));
+    assert!((weight - 0.3).abs() < 1e-6 && set.material_haze("plain").unwrap().is_none());
+    assert!(set.material_haze("no such").is_err());
 }

@@ -13,7 +13,7 @@ use super::{
 };
 use crate::bind_error::BindError;
 use crate::material::Lobe;
-use crate::tables::Tables;
+use crate::tables::{Tables, middle};
 
 /// Any of the BSDFs in three channels, of any lobe: what a renderer keeps for each material of a
 /// scene.
@@ -146,39 +146,59 @@ impl Bsdf for AnyBsdf {
 }
 
 impl Tables {
-    /// The BSDF of a named material of the set's recipe: its lobe, reflectance and form of masking.
+    /// The BSDF of a named material of the set's recipe: its lobe, reflectance and form of masking,
+    /// its haze, and the share of its light that goes back.
     ///
     /// `fresnel = "mirror"`, `schlick`, `conductor` and `metal` make a [`Conductor`], `dielectric`
     /// a [`Dielectric`], never a [`Plastic`], whose base no recipe states. Conductors draw what is
-    /// best [for reflection](Lobe::for_reflection). Ranges are taken at their middle, see
-    /// [`material`](Self::material).
+    /// best [for reflection](Lobe::for_reflection). Haze makes a [`Haze`] of two of these, of one
+    /// reflectance, masking and compensation, and retroreflection a [`Retroreflective`] of either.
+    /// Ranges are taken at their middle, see [`material`](Self::material).
     ///
     /// # Errors
     /// [`BindError::NoFresnel`] for a material that states no reflectance, [`BindError::NoAlbedo`]
     /// or [`BindError::Material`] where a compensation needs albedos that the set does not hold,
-    /// and what [`material`](Self::material) reports.
+    /// [`BindError::NoRetroreflection`] for a dielectric of which a recipe asks for it, and what
+    /// [`material`](Self::material) reports.
     pub fn bsdf(
         &self,
         name: &str,
         compensation: Compensation,
         stand_in: StandIn,
     ) -> Result<AnyBsdf, BindError> {
-        let lobe = self.material(name)?;
+        let (core, haze) = (self.material(name)?, self.material_haze(name)?);
         let entry = self.entry(name)?;
         let settings = BsdfSettings::new()
             .with_masking(entry.masking())
             .compensated(compensation, self)
             .with_stand_in(stand_in);
         let fresnel = entry.fresnel.ok_or_else(|| BindError::NoFresnel(name.into()))?;
-        let reflectance = match fresnel {
-            Reflectance::Mirror => ConductorFresnel::mirror(),
-            Reflectance::Schlick(f0) => ConductorFresnel::schlick(f0.map(|f0| f0 as f32))?,
-            Reflectance::Conductor { eta, k } => ConductorFresnel::exact(eta, k)?,
-            Reflectance::Dielectric(_) | Reflectance::Interface { .. } => {
-                let eta = fresnel.middle_index().unwrap_or(f64::NAN);
-                return Ok(Dielectric::new(lobe, eta, settings)?.into());
-            }
+        let of = |lobe| of_lobe(lobe, fresnel, settings);
+        let whole = match haze {
+            None => of(core)?,
+            Some((haze, weight)) => Haze::new(of(core)?, of(haze)?, weight)?.into(),
         };
-        Ok(Conductor::new(lobe.for_reflection(), reflectance, settings)?.into())
+        match entry.is_retroreflecting() {
+            false => Ok(whole),
+            true => Ok(Retroreflective::new(whole, middle(entry.retroreflection))?.into()),
+        }
     }
+}
+
+/// The BSDF of a lobe of a recipe's material, by the reflectance of the material.
+fn of_lobe(
+    lobe: Lobe,
+    fresnel: Reflectance,
+    settings: BsdfSettings<'_>,
+) -> Result<AnyBsdf, BindError> {
+    let reflectance = match fresnel {
+        Reflectance::Mirror => ConductorFresnel::mirror(),
+        Reflectance::Schlick(f0) => ConductorFresnel::schlick(f0.map(|f0| f0 as f32))?,
+        Reflectance::Conductor { eta, k } => ConductorFresnel::exact(eta, k)?,
+        Reflectance::Dielectric(_) | Reflectance::Interface { .. } => {
+            let eta = fresnel.middle_index().unwrap_or(f64::NAN);
+            return Ok(Dielectric::new(lobe, eta, settings)?.into());
+        }
+    };
+    Ok(Conductor::new(lobe.for_reflection(), reflectance, settings)?.into())
 }
