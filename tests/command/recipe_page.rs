@@ -86,3 +86,44 @@ fn the_recipe_to_start_from_bakes_as_it_is_and_overwrites_nothing() {
     desk.refuses("recipe -o mine.toml", &["mine.toml: ", "exists"]);
     assert_eq!(desk.read("mine.toml"), b"mine");
 }
+
+/// The recipe of a scene has its materials, bit for bit.
+#[test]
+fn the_recipe_of_a_scene_reads_back_to_its_materials() {
+    let files = [
+        (
+            "s.pbrt",
+            "WorldBegin\nMakeNamedMaterial \"steel\" \"string type\" \"conductor\" \"float roughness\" 0.1\n\
+             MakeNamedMaterial \"glass\\n#\" \"string type\" \"dielectric\" \"float uroughness\" 0.04 \
+             \"float vroughness\" 0.3\n",
+        ),
+        (
+            "s.xml",
+            "<scene version=\"3.0.0\"><bsdf type=\"roughconductor\" id=\"gold\">\
+             <float name=\"alpha\" value=\"0.3\"/><string name=\"material\" value=\"Au\"/></bsdf>\
+             <bsdf type=\"roughplastic\" id=\"plastic\"><string name=\"distribution\" value=\"ggx\"/></bsdf>\
+             </scene>",
+        ),
+        (
+            "s.gltf",
+            r#"{"asset":{"version":"2.0"},"materials":[{"name":"a","pbrMetallicRoughness":
+            {"roughnessFactor":0.7}},{"name":"a","pbrMetallicRoughness":{"roughnessFactor":0.2}}]}"#,
+        ),
+        (
+            "s.toml",
+            "[[material]]\nname = \"a\"\nsigma = [0.1, { min = 0.2, max = 0.3 }]\ngamma = \"inf\"\n\
+             haze = { weight = 0.3, distribution = \"gauss\", m = 0.2 }\nretroreflection = 0.5\n",
+        ),
+    ];
+    let desk = Desk::new(&files);
+    for (name, _) in files {
+        let scene = microfacet_scene::load(&desk.join(name)).unwrap();
+        desk.ok(&format!("recipe {name} --out of-{name}.toml"));
+        let again = microfacet_scene::load(&desk.join(&format!("of-{name}.toml"))).unwrap();
+        let used: Vec<_> = scene.materials.iter().filter(|material| material.used).collect();
+        assert!(!used.is_empty() && used.len() == again.materials.len(), "{name}");
+        for (a, b) in used.iter().zip(&again.materials) {
+            assert!(a.asks_the_same(b), "{name}: {a:?} is not {b:?}");
+        }
+    }
+}

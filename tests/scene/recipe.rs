@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use microfacet_baker::scene::{
-    Format, LobeSpec, Masking, Material, Origin, Place, Reflectance, Roughness, Scene,
+    Format, Haze, LobeSpec, Masking, Material, Origin, Place, Reflectance, Roughness, Scene,
 };
 use microfacet_sampler::Metal;
 use microfacet_tables::{Interval, MaterialEntry};
@@ -217,6 +217,66 @@ fn a_measured_file_has_a_unit_of_its_own() {
 }
 
 #[test]
+fn a_haze_is_a_lobe_with_a_weight() {
+    let range = |min, max| Interval { min, max };
+    let core = "sigma = 0.1\ngamma = { min = 2, max = 3 }";
+    let of = |haze: &str| {
+        let scene = load("r.toml", &entry(&format!("{core}\nhaze = {haze}")));
+        reads_back(&scene);
+        let haze = scene.materials[0].haze.clone().unwrap();
+        assert_eq!(scene.materials[0].lobe.gamma, range(2.0, 3.0));
+        (haze.weight, haze.lobe)
+    };
+    let family = |roughness, gamma| LobeSpec::family(roughness, gamma);
+    // The shape is that of the core unless the haze has its own.
+    let shaped = family(isotropic(0.5), range(2.0, 3.0));
+    assert_eq!(of("{ weight = 0.3, sigma = 0.5 }"), (Interval::point(0.3), shaped));
+    let beckmann = family(anisotropic(0.5, 0.25), Interval::point(f64::INFINITY));
+    let stated = "{ weight = { min = 0, max = 1 }, sigma = [0.5, 0.25], gamma = \"inf\" }";
+    assert_eq!(of(stated), (range(0.0, 1.0), beckmann));
+    let (_, tilted) =
+        of("{ weight = 1, sigma = 0.5, gamma = 2, theta = [0, 10, 0], degrees = true }");
+    assert_eq!(tilted.theta, Some([0.0, 10.0_f64.to_radians(), 0.0]));
+    let (_, gauss) = of("{ weight = 0, distribution = \"gauss\", m = 0.2 }");
+    assert_eq!(gauss.distribution.unwrap().label(), "gauss:0.2");
+    let (_, member) = of("{ weight = 0, distribution = \"beckmann\", m = 0.2 }");
+    assert_eq!(member, family(isotropic(0.2), Interval::point(f64::INFINITY)));
+    // A core of another distribution has no shape to share, and takes a haze all the same.
+    let gauss = "distribution = \"gauss\"\nm = 0.1\nhaze = { weight = 0.3, sigma = 0.5";
+    refuse(&format!("{gauss} }}"), "the haze has no `gamma`; add for example gamma = 2.0");
+    reads_back(&load("r.toml", &entry(&format!("{gauss}, gamma = 3 }}"))));
+    // As a table of its own.
+    let table = entry(&format!("{core}\n[material.haze]\nweight = 0.3\nsigma = 0.5"));
+    let inline = entry(&format!("{core}\nhaze = {{ weight = 0.3, sigma = 0.5 }}"));
+    let [table, inline] = [table, inline].map(|text| load("r.toml", &text).materials);
+    assert!(table[0].asks_the_same(&inline[0]));
+    for other in [core.to_owned(), format!("{core}\nhaze = {{ weight = 0.4, sigma = 0.5 }}")] {
+        assert!(!material_of(&other).asks_the_same(&inline[0]), "{other}");
+    }
+}
+
+#[test]
+fn a_share_of_retroreflection_is_a_number_or_a_range() {
+    let of = |share: &str| {
+        let scene = load("r.toml", &entry(&format!("sigma = 0.1\ngamma = 3\n{share}")));
+        reads_back(&scene);
+        scene.materials[0].retroreflection
+    };
+    assert_eq!(of(""), MaterialEntry::SPECULAR);
+    assert_eq!(of("retroreflection = 0"), MaterialEntry::SPECULAR);
+    assert_eq!(of("retroreflection = 0.25"), Interval::point(0.25));
+    let range = Interval { min: 0.0, max: 1.0 };
+    assert_eq!(of("retroreflection = { min = 0, max = 1 }"), range);
+    // A dielectric may state it: what it reflects goes back, what it refracts does not.
+    let pane = "retroreflection = 1\nfresnel = { dielectric = 1.5 }";
+    assert_eq!(of(pane), Interval::point(1.0));
+    let tilted = "sigma = 0.1\ngamma = 3\ntheta = [0.1, 0, 0]";
+    assert_eq!(material_of(tilted).retroreflection, MaterialEntry::SPECULAR);
+    let none = material_of(&format!("{tilted}\nretroreflection = 0"));
+    assert_eq!(none.retroreflection, MaterialEntry::SPECULAR);
+}
+
+#[test]
 fn unused_materials_are_no_part_of_the_recipe() {
     let mut scene = load("r.toml", &entry("sigma = 0.3\ngamma = 2.0"));
     assert!(!scene.to_recipe().is_empty());
@@ -240,7 +300,8 @@ fn roughness() -> impl Strategy<Value = Roughness> {
 }
 
 fn material() -> impl Strategy<Value = Material> {
-    let gamma = interval(prop_oneof![1.500_001..1e6, Just(f64::INFINITY)]);
+    let gamma = || interval(prop_oneof![1.500_001..1e6, Just(f64::INFINITY)]);
+    let lobe = || (roughness(), gamma()).prop_map(|(sigma, gamma)| LobeSpec::family(sigma, gamma));
     let fresnel = prop_oneof![
         Just(Reflectance::Mirror),
         (0.0..=1.0).prop_map(|f0| Reflectance::Schlick([f0; 3])),
@@ -251,12 +312,15 @@ fn material() -> impl Strategy<Value = Material> {
     ];
     let masking = prop::sample::select(&Masking::ALL[..]);
     let name = ".+";
-    let parts = (name, roughness(), gamma, prop::option::of(fresnel), prop::option::of(masking));
-    parts.prop_map(|(name, roughness, gamma, fresnel, masking)| Material {
+    let haze = (interval(0.0..=1.0), lobe());
+    let haze = haze.prop_map(|(weight, lobe)| Haze { weight, lobe });
+    let (fresnel, masking) = (prop::option::of(fresnel), prop::option::of(masking));
+    let parts = (name, lobe(), prop::option::of(haze), interval(0.0..=1.0), fresnel, masking);
+    parts.prop_map(|(name, lobe, haze, retroreflection, fresnel, masking)| Material {
         name,
-        lobe: LobeSpec::family(roughness, gamma),
-        haze: None,
-        retroreflection: MaterialEntry::SPECULAR,
+        lobe,
+        haze,
+        retroreflection,
         fresnel,
         masking,
         origin: Origin {

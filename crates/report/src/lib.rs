@@ -8,6 +8,7 @@
 //! [`plot`] has figures of the literature and of the model as data, and writes them as SVG and PNG.
 //! [`words`] describes sets, tables, certificates and verdicts, the same in commands and pages.
 
+mod by_lobe;
 mod curves;
 mod drawing;
 mod energy;

@@ -7,6 +7,7 @@ use microfacet_sampler::Tables;
 use microfacet_tables::{Provenance, Table};
 
 use super::Source;
+use super::by_lobe::by_lobe;
 use super::drawing::{code, error, symbols, table};
 use super::served::{Served, served};
 use crate::words::table::{albedos, axis, covers, holds, normals, precision};
@@ -48,7 +49,8 @@ fn ranges(set: &Tables) -> Markup {
 }
 
 fn materials(set: &Tables) -> Markup {
-    let all = served(set);
+    let lobes = by_lobe(set);
+    let all = served(&lobes);
     let shown = &all[..all.len().min(ROWS)];
     let caption = html! {
         "Materials. Bytes are those of the tables that a material reads, some of which others may \

@@ -4,6 +4,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use microfacet_baker::progress::Meter;
 
+use super::by_lobe::by_lobe;
 use super::subjects::Subjects;
 use super::{ReportError, Source, curves, energy, errors, head, overview, sphere, validated};
 
@@ -21,8 +22,11 @@ struct Section {
 }
 
 pub(super) fn page(source: &Source, meter: &Meter) -> Result<String, ReportError> {
-    let subjects = Subjects::of(source.set);
-    let (look, scripts) = match sphere::parts(source, &subjects, meter)? {
+    // Figures are of one lobe each.
+    let set = by_lobe(source.set);
+    let lobes = &Source { set: &set, ..*source };
+    let subjects = Subjects::of(&set);
+    let (look, scripts) = match sphere::parts(lobes, &subjects, meter)? {
         Some(parts) => (parts.body, parts.scripts),
         None => (html! {}, html! {}),
     };
@@ -40,7 +44,7 @@ pub(super) fn page(source: &Source, meter: &Meter) -> Result<String, ReportError
             lead: "Smith's G1 is the share of facets that a view sees unmasked; the directional \
                    albedo E is the share of light that one bounce returns if facets reflect all of \
                    it. Each lobe is shown beside GGX and Beckmann of the same roughness σ.",
-            content: curves::section(source, &subjects),
+            content: curves::section(lobes, &subjects),
         },
         Section {
             id: "energy",
@@ -48,7 +52,7 @@ pub(super) fn page(source: &Source, meter: &Meter) -> Result<String, ReportError
             lead: "A white furnace: facets that reflect all light, lit from everywhere. What is \
                    missing from 1 is light that further bounces would return, and what compensation \
                    brings back.",
-            content: energy::section(source, &subjects, meter)?,
+            content: energy::section(lobes, &subjects, meter)?,
         },
         Section {
             id: "errors",
@@ -56,7 +60,7 @@ pub(super) fn page(source: &Source, meter: &Meter) -> Result<String, ReportError
             lead: "The error of each table between its nodes, against the model in double \
                    precision. A ring marks the place of the largest error that was certified when \
                    the table was baked.",
-            content: errors::section(source, meter)?,
+            content: errors::section(lobes, meter)?,
         },
         Section {
             id: "validation",

@@ -38,6 +38,8 @@ impl Part {
     }
 }
 
+/// The materials of a set whose materials have one lobe each, as [`by_lobe`](super::by_lobe) makes
+/// it.
 pub(super) fn served(set: &Tables) -> Vec<Served<'_>> {
     let wishes = wishes(&recipe_of(&set.provenance().materials));
     let default = Tables::embedded();
@@ -69,10 +71,14 @@ fn of<'a>(
     if entry.lobe.is_smooth() {
         [shape, masking] = ["-", "-"].map(String::from);
     }
+    let mut reflectance = fresnel(entry.fresnel.as_ref());
+    if entry.is_retroreflecting() {
+        reflectance += &format!(", retroreflection {}", range(entry.retroreflection));
+    }
     let sigma = if x == y { x } else { format!("{x} and {y}") };
     Served {
         name: &entry.name,
-        words: [sigma, shape, masking, fresnel(entry.fresnel.as_ref())],
+        words: [sigma, shape, masking, reflectance],
         lobe: lobe(set, default, entry),
         albedo: albedo(set, default, entry, wishes.get(&entry.name)),
         bytes: tables_of(set, entry).map(Table::stored_bytes).sum(),

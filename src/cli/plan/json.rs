@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use microfacet_baker::distribution::Distribution;
-use microfacet_baker::plan::{AlbedoVerdict, StandIn, Verdict, entry};
+use microfacet_baker::plan::{AlbedoVerdict, Judged, StandIn, Verdict, entry};
 use microfacet_baker::scene::{Ignored, Material};
 use microfacet_baker::table_spec::TableSpec;
 use microfacet_report::words::verdict::{albedo_reason, reason};
@@ -13,35 +13,56 @@ use super::Report;
 use super::words::{OWN_TABLES, Outline, Part, Tables};
 
 impl Outline<'_> {
-    /// The verdict on each material of the scene.
+    /// The verdict on each material of the scene, with that on its haze inside.
     pub(in crate::cli) fn materials(&self) -> Vec<Value> {
-        let Self { scene, plan, .. } = self;
-        let verdicts = plan.verdicts.iter().zip(&plan.albedo_verdicts);
-        let material = |(material, (verdict, albedo)): (&Material, (_, &AlbedoVerdict))| {
-            let [short, long] = reason(verdict);
-            let other = match *verdict {
-                Verdict::Same { as_material: i, .. } | Verdict::Within { of_material: i, .. } => {
-                    Some(&scene.materials[i].name)
+        let mut all: Vec<Value> = Vec::new();
+        for judged in self.plan.judged(self.scene) {
+            let Material { name, origin, haze, retroreflection, .. } = judged.material;
+            let mut lobe = self.lobe(&judged);
+            if judged.is_haze {
+                lobe["weight"] = json!(haze.as_ref().map(|haze| haze.weight));
+                if let Some(core) = all.last_mut() {
+                    core["haze"] = lobe;
                 }
-                _ => None,
-            };
-            // The name is that of the scene.
-            let MaterialEntry {
-                lobe: LobeSpec { distribution, theta, .. }, masking, fresnel, ..
-            } = entry(material);
-            let of_family = distribution.is_none();
-            let stand_in = StandIn::of(material)
-                .filter(|_| matches!(albedo, AlbedoVerdict::Bake(_) | AlbedoVerdict::Embedded));
-            json!({
-                "name": material.name, "lobe": material.origin.lobe, "place": material.origin.place.to_string(),
-                "sigma": material.lobe.sigmas(),
-                "gamma": of_family.then(|| texts(material.lobe.gamma)),
-                "distribution": distribution, "theta": theta, "masking": masking, "fresnel": fresnel,
-                "verdict": short, "why": long, "shapes": verdict.need(),
-                "shares_with": other, "albedo": albedo_reason(albedo), "stand_in": stand_in,
-            })
+                continue;
+            }
+            let MaterialEntry { masking, fresnel, .. } = judged.part.entry();
+            for (key, value) in [
+                ("name", json!(name)),
+                ("lobe", json!(origin.lobe)),
+                ("place", json!(origin.place.to_string())),
+                ("masking", json!(masking)),
+                ("fresnel", json!(fresnel)),
+                ("haze", Value::Null),
+                ("retroreflection", json!(retroreflection)),
+            ] {
+                lobe[key] = value;
+            }
+            all.push(lobe);
+        }
+        all
+    }
+
+    /// One lobe of a material, and the verdicts on it.
+    fn lobe(&self, Judged { part, verdict, albedo, .. }: &Judged<'_>) -> Value {
+        let [short, long] = reason(verdict);
+        let other = match **verdict {
+            Verdict::Same { as_material: i, .. } | Verdict::Within { of_material: i, .. } => {
+                Some(&self.scene.materials[i].name)
+            }
+            _ => None,
         };
-        scene.materials.iter().zip(verdicts).map(material).collect()
+        let LobeSpec { distribution, theta, .. } = entry(part).lobe;
+        let of_family = distribution.is_none();
+        let stand_in = StandIn::of(part)
+            .filter(|_| matches!(albedo, AlbedoVerdict::Bake(_) | AlbedoVerdict::Embedded));
+        json!({
+            "sigma": part.lobe.sigmas(),
+            "gamma": of_family.then(|| texts(part.lobe.gamma)),
+            "distribution": distribution, "theta": theta,
+            "verdict": short, "why": long, "shapes": verdict.need(),
+            "shares_with": other, "albedo": albedo_reason(albedo), "stand_in": stand_in,
+        })
     }
 
     /// The materials that no lobe describes.

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use microfacet_baker::bake::albedo::{AlbedoLobe, AlbedoSpec};
 use microfacet_baker::distribution::Distribution;
 use microfacet_baker::plan::{
-    AlbedoVerdict, AlbedoWish, Cost, Plan, RequiredShapes, StandIn, Verdict, entry,
+    AlbedoVerdict, AlbedoWish, Cost, Judged, Plan, RequiredShapes, StandIn, Verdict, entry,
 };
 use microfacet_baker::scene::{Ignored, Scene};
 use microfacet_baker::table_set::{BakeError, costs};
@@ -173,9 +173,8 @@ impl<'a> Outline<'a> {
         let parts = shapes.chain(own).chain(albedos).zip(&costs).map(part);
         let mut parts = parts.collect::<Result<Vec<Part<'a>>, BakeError>>()?;
         let first = [plan.shapes.len(), plan.shapes.len() + plan.distributions.len()];
-        let verdicts = plan.verdicts.iter().zip(&plan.albedo_verdicts);
-        for (material, (verdict, albedo)) in scene.materials.iter().zip(verdicts) {
-            let own = |known: &Distribution| material.lobe.distribution.as_ref() == Some(known);
+        for Judged { material, part, verdict, albedo, .. } in plan.judged(scene) {
+            let own = |known: &Distribution| part.lobe.distribution.as_ref() == Some(known);
             let own = match verdict {
                 // A linear search: a scene has a thousand distributions at most.
                 Verdict::Own => plan.distributions.iter().position(own).map(|i| first[0] + i),
@@ -186,10 +185,14 @@ impl<'a> Outline<'a> {
                 _ => &[],
             };
             let albedos = albedos.iter().map(|i| first[1] + i);
-            let stand_in = StandIn::of(material).map(|it| (&material.name[..], it));
+            let name = &material.name[..];
+            let stand_in = StandIn::of(&part).map(|it| (name, it));
             for i in verdict.need().into_iter().chain(own).chain(albedos) {
                 let Part { tables, names, stand_ins, .. } = &mut parts[i];
-                names.push(&material.name);
+                // Both lobes of a material may read them.
+                if names.last() != Some(&name) {
+                    names.push(name);
+                }
                 if matches!(tables, Tables::Albedo(spec) if spec.lobe.is_family()) {
                     stand_ins.extend(stand_in);
                 }
@@ -225,15 +228,20 @@ impl<'a> Outline<'a> {
         let Self { scene, plan, .. } = self;
         // Sorted by rank, then by the alphabet.
         let mut all: BTreeMap<(usize, [Cow<'a, str>; 2]), Vec<&'a str>> = BTreeMap::new();
-        let mut add = |rank, why, name| all.entry((rank, why)).or_default().push(name);
-        for (material, verdict) in scene.materials.iter().zip(&plan.verdicts) {
+        let mut add = |rank, why, name| {
+            let names = all.entry((rank, why)).or_default();
+            if names.last() != Some(&name) {
+                names.push(name);
+            }
+        };
+        for Judged { material, verdict, .. } in plan.judged(scene) {
             if verdict.need().is_none() && *verdict != Verdict::Own {
                 add(0, reason(verdict), &material.name[..]);
             }
         }
-        for (material, verdict) in scene.materials.iter().zip(&plan.albedo_verdicts) {
-            let [what, mut why] = albedo_reason(verdict);
-            match verdict {
+        for Judged { material, albedo, .. } in plan.judged(scene) {
+            let [what, mut why] = albedo_reason(albedo);
+            match albedo {
                 AlbedoVerdict::Bake(_) | AlbedoVerdict::NotNeeded => continue,
                 AlbedoVerdict::Imported => why = self.offer().map_or(why, Cow::from),
                 _ => {}

@@ -8,9 +8,10 @@ use microfacet_tables::{LobeForm, LobeSpec, Precision, Reflectance, Roughness, S
 
 use super::cost::AlbedoWork;
 use super::key::{self, Numbers, distinct};
-use super::{NotCovered, Options, is_tabulated, refusal};
+use super::part::Part;
+use super::{NotCovered, Options, refusal};
 use crate::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec};
-use crate::scene::{Format, Material, Scene};
+use crate::scene::{Format, Material};
 use crate::table_spec::{Level, Quality};
 
 /// Which materials get albedo tables.
@@ -148,25 +149,25 @@ impl Needs {
     }
 }
 
-/// Albedos, and one verdict for each material of their scene.
+/// Albedos, and one verdict for each lobe of their scene.
 type Wanted = (Vec<RequiredAlbedo>, Vec<AlbedoVerdict>);
 
-/// The required albedos of a scene, and those that would take too long.
+/// The required albedos of the lobes of a scene, and those that would take too long.
 pub(super) fn required(
-    scene: &Scene,
+    lobes: &[Part<'_>],
     options: Options,
 ) -> Result<(Wanted, Vec<RequiredAlbedo>), NotCovered> {
-    let is_imported = |material: &Material| material.origin.format != Format::Recipe;
+    let is_imported = |part: &Part<'_>| part.of.origin.format != Format::Recipe;
     let (mut offered, mut if_asked) = (Vec::new(), Vec::new());
-    if options.albedo == AlbedoWish::Auto && scene.materials.iter().any(is_imported) {
-        match wanted(scene, Options { albedo: AlbedoWish::All, ..options }) {
+    if options.albedo == AlbedoWish::Auto && lobes.iter().any(is_imported) {
+        match wanted(lobes, Options { albedo: AlbedoWish::All, ..options }) {
             Ok(wanted) if is_quick(&wanted.0, options.quality) => return Ok((wanted, offered)),
             Ok(wanted) => (offered, if_asked) = wanted,
             // What is refused where it is asked for is not offered.
             Err(_) => {}
         }
     }
-    let (albedos, mut verdicts) = wanted(scene, options)?;
+    let (albedos, mut verdicts) = wanted(lobes, options)?;
     for (verdict, if_asked) in verdicts.iter_mut().zip(if_asked) {
         // `Imported` means that tables are baked on request.
         if *verdict == AlbedoVerdict::Imported && !matches!(if_asked, AlbedoVerdict::Bake(_)) {
@@ -186,13 +187,10 @@ fn is_quick(all: &[RequiredAlbedo], quality: Quality) -> bool {
     })
 }
 
-/// The albedos of a scene under the wish in `options`.
-fn wanted(scene: &Scene, options: Options) -> Result<Wanted, NotCovered> {
-    let wants: Vec<Result<Vec<Want>, AlbedoVerdict>> = scene
-        .materials
-        .iter()
-        .map(|material| wants(material, options))
-        .collect::<Result<_, _>>()?;
+/// The albedos of lobes under the wish in `options`.
+fn wanted(lobes: &[Part<'_>], options: Options) -> Result<Wanted, NotCovered> {
+    let wants: Vec<Result<Vec<Want>, AlbedoVerdict>> =
+        lobes.iter().map(|part| wants(part, options)).collect::<Result<_, _>>()?;
     let all = || wants.iter().flatten().flatten();
     let mut reflectances = distinct(all().map(|want| want.reflectance), key::of_reflectance);
     // The moments first, since they serve most materials.
@@ -233,14 +231,15 @@ fn wanted(scene: &Scene, options: Options) -> Result<Wanted, NotCovered> {
     Ok((needs.all, verdicts))
 }
 
-/// The tables that a material asks for, or the verdict if it gets none.
+/// The tables that a lobe asks for, or the verdict if it gets none.
 fn wants(
-    material: &Material,
+    part: &Part<'_>,
     options: Options,
 ) -> Result<Result<Vec<Want>, AlbedoVerdict>, NotCovered> {
-    if let Some(verdict) = unasked(material, options) {
+    if let Some(verdict) = unasked(part, options) {
         return Ok(Err(verdict));
     }
+    let material = &*part.of;
     let lobe = material.lobe.tabulated();
     let of = |reflectance: Reflectance| Want {
         lobe: tabulated(&material.lobe, &reflectance),
@@ -280,10 +279,11 @@ pub(super) fn tabulated(lobe: &AlbedoLobe, reflectance: &Reflectance) -> AlbedoL
 }
 
 /// The verdict if no albedo is asked for.
-fn unasked(material: &Material, options: Options) -> Option<AlbedoVerdict> {
+fn unasked(part: &Part<'_>, options: Options) -> Option<AlbedoVerdict> {
+    let material = &*part.of;
     let native = material.origin.format == Format::Recipe;
     match options.albedo {
-        _ if !is_tabulated(material) => Some(AlbedoVerdict::NotNeeded),
+        _ if !part.is_tabulated() => Some(AlbedoVerdict::NotNeeded),
         AlbedoWish::None => Some(AlbedoVerdict::Declined),
         AlbedoWish::Auto if !native => Some(AlbedoVerdict::Imported),
         AlbedoWish::Auto if material.fresnel.is_none() => Some(AlbedoVerdict::NotAsked),

@@ -54,7 +54,9 @@ pub(crate) fn bare_bytes(provenance: &Provenance) -> usize {
     let dielectric = |entry: &MaterialEntry| entry.fresnel.is_some_and(|f| f.indices().is_some());
     let formulas = Mapping::EVERY.into_iter().filter(|mapping| match mapping {
         Mapping::LogShape(_) | Mapping::LogRoughness(_) | Mapping::ViewBlend(_) => has("albedo"),
-        Mapping::Azimuth(_) => some(&|entry| !entry.lobe.tabulated().is_family()),
+        Mapping::Azimuth(_) => {
+            some(&|entry| entry.lobes().any(|lobe| !lobe.tabulated().is_family()))
+        }
         Mapping::ReflectanceRoot | Mapping::CriticalBlend(_) => some(&dielectric),
         _ => has("visible_slope"),
     });

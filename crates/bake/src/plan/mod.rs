@@ -8,6 +8,7 @@
 mod albedo;
 mod cost;
 mod key;
+mod part;
 mod provenance;
 mod required_shapes;
 mod stand_in;
@@ -15,8 +16,11 @@ mod stand_in;
 pub use albedo::{AlbedoVerdict, AlbedoWish, RequiredAlbedo};
 pub(crate) use cost::{AlbedoWork, Known, bare_bytes, growth, normals_work, radial_work};
 pub use cost::{Cost, on_threads, place_seconds, point_seconds};
+pub use part::Judged;
 pub use required_shapes::RequiredShapes;
 pub use stand_in::StandIn;
+
+use self::part::Part;
 
 use microfacet_sampler::{Ellipsoid, StudentT};
 use microfacet_tables::{Interval, LobeSpec, MaterialEntry, Roughness};
@@ -99,11 +103,12 @@ pub struct Plan {
     pub shapes: Vec<RequiredShapes>,
     /// Distributions outside the family that materials have, each once.
     pub distributions: Vec<Distribution>,
-    /// One verdict for each material of the scene, in order.
+    /// One verdict for each lobe of the scene's materials, in order: of a material with a haze one
+    /// for its core, then one for the haze. [`judged`](Self::judged) pairs them.
     pub verdicts: Vec<Verdict>,
     /// The albedos that tables are to cover.
     pub albedos: Vec<RequiredAlbedo>,
-    /// One verdict on the albedo of each material, in order.
+    /// One verdict on the albedo of each lobe, in the same order.
     pub albedo_verdicts: Vec<AlbedoVerdict>,
     /// The albedos that [`AlbedoWish::Auto`] leaves out because they would take long.
     pub offered: Vec<RequiredAlbedo>,
@@ -128,11 +133,9 @@ impl Plan {
     /// with [`Options::strict`], for a γ that no table covers, a σ that no lobe can have, or a σ
     /// that no albedo table covers if an albedo is asked for.
     pub fn new(scene: &Scene, options: Options) -> Result<Self, NotCovered> {
-        let wants: Vec<Result<Interval, Verdict>> = scene
-            .materials
-            .iter()
-            .map(|material| want(material, options))
-            .collect::<Result<_, _>>()?;
+        let lobes = part::parts(scene);
+        let wants: Vec<Result<Interval, Verdict>> =
+            lobes.iter().map(|part| want(part, options)).collect::<Result<_, _>>()?;
         let mut needs = required_shapes::disjoint(wants.iter().flatten().copied());
         if let Some(range) = required_shapes::cheaper_range(&needs) {
             needs = required_shapes::disjoint(wants.iter().flatten().copied().chain([range]));
@@ -154,8 +157,10 @@ impl Plan {
         }
         let within = |need: usize, i: usize, want: &Interval| match owner[need] {
             Some(other) if other == i => Verdict::Bake(need),
-            Some(other) if wants[other] == Ok(*want) => Verdict::Same { need, as_material: other },
-            other => Verdict::Within { need, of_material: other.unwrap_or(i) },
+            Some(other) if wants[other] == Ok(*want) => {
+                Verdict::Same { need, as_material: lobes[other].material }
+            }
+            other => Verdict::Within { need, of_material: lobes[other.unwrap_or(i)].material },
         };
         let verdict = |(i, want): (usize, &Result<Interval, Verdict>)| match want {
             Ok(want) => within(find(want), i, want),
@@ -167,10 +172,11 @@ impl Plan {
             Err(verdict) => verdict.clone(),
         };
         let verdicts = wants.iter().enumerate().map(verdict).collect();
-        let ((albedos, albedo_verdicts), offered) = albedo::required(scene, options)?;
-        let distributions = distributions(scene);
-        let materials = scene.materials.iter().filter(|material| is_listed(material)).map(entry);
-        let materials = materials.collect();
+        let ((albedos, albedo_verdicts), offered) = albedo::required(&lobes, options)?;
+        let distributions = distributions(&lobes);
+        // A material with a haze is listed whole or not at all.
+        let listed = lobes.iter().filter(|part| !part.is_haze && part.is_listed());
+        let materials = listed.map(|part| entry(&scene.materials[part.material])).collect();
         Ok(Self {
             shapes: needs,
             distributions,
@@ -184,10 +190,13 @@ impl Plan {
 
     /// Why materials, and the albedos of materials, are not covered.
     pub fn not_covered(&self) -> impl Iterator<Item = &NotCovered> {
+        let mut last = None;
         let lobes = self.verdicts.iter().filter_map(|verdict| match verdict {
             Verdict::NotCovered(why) => Some(why),
             _ => None,
         });
+        // Both lobes of a material have the reason of one of them.
+        let lobes = lobes.filter(move |why| last.replace(*why) != Some(*why));
         let albedos = self.albedo_verdicts.iter().filter_map(|verdict| match verdict {
             AlbedoVerdict::NotCovered(why) => Some(why),
             _ => None,
@@ -206,39 +215,38 @@ impl Plan {
     }
 }
 
-/// The range of γ that a material requires tables for, or the reason why it requires none.
-fn want(material: &Material, options: Options) -> Result<Result<Interval, Verdict>, NotCovered> {
-    if !material.used {
+/// The range of γ that a lobe requires tables for, or the reason why it requires none.
+fn want(part: &Part<'_>, options: Options) -> Result<Result<Interval, Verdict>, NotCovered> {
+    let Material { lobe, used, .. } = &*part.of;
+    if !used {
         return Ok(Err(Verdict::NotUsed));
     }
-    if !is_rough(material) {
+    if !is_rough(lobe) {
         return Ok(Err(Verdict::NotRough));
     }
-    if let Some(why) = not_covered(material) {
-        return refusal(material, options, why).map(|why| Err(Verdict::NotCovered(why)));
+    if let Some(why) = part.uncovered.clone() {
+        return refusal(&part.of, options, why).map(|why| Err(Verdict::NotCovered(why)));
     }
-    if material.lobe.distribution.is_some() {
+    if lobe.distribution.is_some() {
         return Ok(Err(Verdict::Own));
     }
-    let gamma = material.lobe.gamma;
     // Ellipsoids have no closed form at γ = 2 in the sampler crate, which reads tables for them.
-    if gamma == Interval::point(GGX) && !options.tabulate_ggx && material.lobe.theta.is_none() {
+    if lobe.gamma == Interval::point(GGX) && !options.tabulate_ggx && lobe.theta.is_none() {
         return Ok(Err(Verdict::ClosedForm));
     }
-    Ok(if options.embedded { Err(Verdict::Embedded) } else { Ok(gamma) })
+    Ok(if options.embedded { Err(Verdict::Embedded) } else { Ok(lobe.gamma) })
 }
 
-/// Why neither tables nor closed forms cover a rough material, if they do not.
-fn not_covered(material: &Material) -> Option<NotCovered> {
-    let range = lobe_sigmas(material);
-    let name = || material.name.clone();
-    for sigma in material.lobe.sigmas().map(|sigma| sigma.max) {
+/// Why neither tables nor closed forms cover a rough lobe of a material, if they do not.
+fn not_covered(lobe: &LobeSpec<Distribution>, material: &str) -> Option<NotCovered> {
+    let (range, name) = (lobe_sigmas(lobe), || material.to_owned());
+    for sigma in lobe.sigmas().map(|sigma| sigma.max) {
         if !(range[0]..=range[1]).contains(&sigma) {
             return Some(NotCovered::Lobe { material: name(), sigma, range });
         }
     }
-    let gamma = material.lobe.gamma.min;
-    let outside = material.lobe.distribution.is_none() && gamma < GAMMA_MIN;
+    let gamma = lobe.gamma.min;
+    let outside = lobe.distribution.is_none() && gamma < GAMMA_MIN;
     outside.then(|| NotCovered::Gamma { material: name(), gamma })
 }
 
@@ -253,41 +261,39 @@ fn refusal(
     if refuses { Err(why) } else { Ok(why) }
 }
 
-fn distributions(scene: &Scene) -> Vec<Distribution> {
-    let tabulated = scene.materials.iter().filter(|material| is_tabulated(material));
-    let all = tabulated.filter_map(|material| material.lobe.distribution.as_ref());
+fn distributions(lobes: &[Part<'_>]) -> Vec<Distribution> {
+    let tabulated = lobes.iter().filter(|part| part.is_tabulated());
+    let all = tabulated.filter_map(|part| part.of.lobe.distribution.as_ref());
     key::distinct(all, |all| all.label()).into_iter().cloned().collect()
 }
 
 /// Whether there are microfacets at any point of the surface.
-fn is_rough(material: &Material) -> bool {
-    let [least, _] = lobe_sigmas(material);
-    let [x, y] = material.lobe.sigmas().map(|sigma| sigma.max);
+fn is_rough(lobe: &LobeSpec<Distribution>) -> bool {
+    let [least, _] = lobe_sigmas(lobe);
+    let [x, y] = lobe.sigmas().map(|sigma| sigma.max);
     x > 0.0 && y > 0.0 && x.max(y) >= least
 }
 
 /// The smallest and the largest σ that a lobe can have.
-fn lobe_sigmas(material: &Material) -> [f64; 2] {
-    if material.lobe.theta.is_some() { Ellipsoid::SIGMAS } else { StudentT::SIGMAS }
+fn lobe_sigmas(lobe: &LobeSpec<Distribution>) -> [f64; 2] {
+    if lobe.theta.is_some() { Ellipsoid::SIGMAS } else { StudentT::SIGMAS }
 }
 
-/// Whether a set lists the material: if it is in use, and covered by tables or closed forms, or
-/// smooth.
-fn is_listed(material: &Material) -> bool {
-    material.used && (!is_rough(material) || not_covered(material).is_none())
-}
-
-fn is_tabulated(material: &Material) -> bool {
-    is_listed(material) && is_rough(material)
-}
-
-/// A material as a set lists it: σ is 0 if it has no microfacets.
+/// A material as a set lists it: σ is 0 of a lobe without microfacets.
 pub fn entry(material: &Material) -> MaterialEntry {
-    let entry = material.entry();
-    if is_rough(material) {
-        return entry;
+    let smooth = |lobe: &LobeSpec<Distribution>| {
+        (!is_rough(lobe)).then(|| LobeSpec::family(Roughness::Smooth, lobe.gamma))
+    };
+    let mut entry = material.entry();
+    if let Some(lobe) = smooth(&material.lobe) {
+        entry.lobe = lobe;
     }
-    MaterialEntry { lobe: LobeSpec::family(Roughness::Smooth, material.lobe.gamma), ..entry }
+    if let (Some(haze), Some(of)) = (&mut entry.haze, &material.haze)
+        && let Some(lobe) = smooth(&of.lobe)
+    {
+        haze.lobe = lobe;
+    }
+    entry
 }
 
 /// A material that tables cannot cover.

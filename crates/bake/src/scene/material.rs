@@ -99,6 +99,19 @@ impl Material {
         std::iter::once(&self.lobe).chain(self.haze.iter().map(|haze| &haze.lobe))
     }
 
+    /// It as materials of one lobe each under its name: the core, then the haze if it has one. No
+    /// table differs by retroreflection.
+    pub fn parts(&self) -> impl Iterator<Item = Cow<'_, Self>> {
+        let haze = self.haze.as_ref().map(|Haze { lobe, .. }| {
+            Cow::Owned(Self { lobe: lobe.clone(), haze: None, ..self.clone() })
+        });
+        let core = match haze {
+            None => Cow::Borrowed(self),
+            Some(_) => Cow::Owned(Self { haze: None, ..self.clone() }),
+        };
+        std::iter::once(core).chain(haze)
+    }
+
     /// The material as sets list it.
     #[must_use]
     pub fn entry(&self) -> MaterialEntry {

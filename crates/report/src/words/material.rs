@@ -1,30 +1,43 @@
 //! Materials in words.
 
-use microfacet_tables::{MaterialEntry, Reflectance};
+use microfacet_tables::{Haze, LobeSpec, MaterialEntry, Reflectance};
 
 use super::{number, range};
 
-/// What a material is: its roughness and shape or distribution, the masking that its albedo has,
-/// and the Fresnel term that it states.
+/// What a material is: its roughness and shape or distribution, its haze and the share of
+/// retroreflection if it has them, the masking that its albedo has, and the Fresnel term that it
+/// states.
 pub fn material(entry: &MaterialEntry) -> String {
-    let mut parts = Vec::new();
-    if entry.lobe.is_smooth() {
-        parts.push("smooth".into());
-    } else if let Some(label) = &entry.lobe.distribution {
-        parts.push(label.clone());
-    } else {
-        let [x, y] = entry.lobe.sigmas().map(range);
-        // Equal ranges along both axes may vary independently.
-        let is_one = entry.lobe.roughness.is_isotropic();
-        parts.push(if is_one { format!("sigma {x}") } else { format!("sigma {x} and {y}") });
-        parts.push(format!("gamma {}", range(entry.lobe.gamma)));
+    let mut parts = vec![lobe(&entry.lobe)];
+    if let Some(Haze { weight, lobe: of }) = &entry.haze {
+        parts.push(format!("haze of weight {} ({})", range(*weight), lobe(of)));
     }
-    parts.extend(entry.lobe.theta.map(|theta| format!("theta {}", theta.map(number).join(", "))));
-    // If no masking is stated the default applies, but a smooth lobe has none.
-    if entry.masking.is_some() || !entry.lobe.is_smooth() {
+    if entry.is_retroreflecting() {
+        parts.push(format!("retroreflection {}", range(entry.retroreflection)));
+    }
+    // If no masking is stated the default applies, but smooth lobes have none.
+    if entry.masking.is_some() || !entry.lobes().all(LobeSpec::is_smooth) {
         parts.push(format!("{} masking", entry.masking()));
     }
     parts.push(fresnel(entry.fresnel.as_ref()));
+    parts.join(", ")
+}
+
+/// A lobe by its roughness and shape, or its distribution.
+fn lobe(of: &LobeSpec) -> String {
+    let mut parts = Vec::new();
+    if of.is_smooth() {
+        parts.push("smooth".into());
+    } else if let Some(label) = &of.distribution {
+        parts.push(label.clone());
+    } else {
+        let [x, y] = of.sigmas().map(range);
+        // Equal ranges along both axes may vary independently.
+        let is_one = of.roughness.is_isotropic();
+        parts.push(if is_one { format!("sigma {x}") } else { format!("sigma {x} and {y}") });
+        parts.push(format!("gamma {}", range(of.gamma)));
+    }
+    parts.extend(of.theta.map(|theta| format!("theta {}", theta.map(number).join(", "))));
     parts.join(", ")
 }
 

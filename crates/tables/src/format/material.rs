@@ -98,6 +98,19 @@ impl MaterialEntry {
         core::iter::once(&self.lobe).chain(self.haze.iter().map(|haze| &haze.lobe))
     }
 
+    /// It as entries of one lobe each under its name: the core, then the haze if it has one. They
+    /// state no retroreflection, for which no table differs.
+    pub fn parts(&self) -> impl Iterator<Item = Self> {
+        let of = |lobe: &LobeSpec| Self {
+            name: self.name.clone(),
+            lobe: lobe.clone(),
+            haze: None,
+            retroreflection: Self::SPECULAR,
+            ..*self
+        };
+        self.lobes().map(of)
+    }
+
     /// Whether it sends any light back to where it comes from, at any point.
     pub fn is_retroreflecting(&self) -> bool {
         self.retroreflection != Self::SPECULAR
@@ -205,6 +218,9 @@ mod tests {
         let entry = hazy();
         let lobes: Vec<&LobeSpec> = entry.lobes().collect();
         assert_eq!(lobes, [&entry.lobe, &entry.haze.as_ref().unwrap().lobe]);
-        assert_eq!(plain().lobes().count(), 1);
+        let [core, haze] = [&entry.lobe, &entry.haze.as_ref().unwrap().lobe]
+            .map(|lobe| MaterialEntry { lobe: lobe.clone(), ..plain() });
+        assert_eq!(entry.parts().collect::<Vec<_>>(), [core, haze]);
+        assert_eq!(plain().parts().collect::<Vec<_>>(), [plain()]);
     }
 }

@@ -4,17 +4,16 @@ use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
 use super::*;
+use crate::plan::part::parts;
+use crate::scene::Scene;
 
 /// The required albedos by comparison of all with all.
 fn by_comparison(
-    scene: &Scene,
+    lobes: &[Part<'_>],
     options: Options,
 ) -> Result<(Vec<RequiredAlbedo>, Vec<AlbedoVerdict>), NotCovered> {
-    let wants: Vec<Result<Vec<Want>, AlbedoVerdict>> = scene
-        .materials
-        .iter()
-        .map(|material| wants(material, options))
-        .collect::<Result<_, _>>()?;
+    let wants: Vec<Result<Vec<Want>, AlbedoVerdict>> =
+        lobes.iter().map(|part| wants(part, options)).collect::<Result<_, _>>()?;
     let all: Vec<&Want> = wants.iter().flatten().flatten().collect();
     let mut reflectances: Vec<Reflectance> = Vec::new();
     for want in &all {
@@ -82,7 +81,7 @@ fn recipe(rng: &mut StdRng, materials: usize) -> String {
         text += &format!("[[material]]\nname = \"{i}\"\n");
         let (number, gamma) = (pick(&numbers), pick(&["1.6", "2", "3", "4.5", "7", "\"inf\""]));
         let sigma = match &pick(&["one", "one", "range", "two", "tilted", "other"])[..] {
-            "one" => number,
+            "one" => number.clone(),
             "range" => format!("{{ min = {number}, max = 0.{} }}", pick(&["4", "5"])),
             "two" => format!("[{number}, {}]", pick(&["0.1", "0.2"])),
             "tilted" => format!("[{number}, 0.2]\ntheta = [{}, -0.0, 0.5]", pick(&["0", "0.1"])),
@@ -104,6 +103,12 @@ fn recipe(rng: &mut StdRng, materials: usize) -> String {
             "fresnel = { dielectric = { min = 1.3, max = 1.6 } }\n",
         ]);
         text += &pick(&["", "masking = \"uncorrelated\"\n"]);
+        let haze = "haze = { weight = 0.3, ";
+        text += &match &pick(&["", "", "round", "two"])[..] {
+            "round" => format!("{haze}sigma = {number}, gamma = {gamma} }}\n"),
+            "two" => format!("{haze}sigma = [0.4, 0.7], gamma = 3 }}\n"),
+            _ => String::new(),
+        };
     }
     text
 }
@@ -117,8 +122,9 @@ fn what_is_planned_is_what_a_comparison_of_all_finds() {
         let scene = Scene::from_recipe_str(&recipe).unwrap_or_else(|why| panic!("{why}\n{recipe}"));
         for albedo in [AlbedoWish::Auto, AlbedoWish::All] {
             let options = Options { albedo, embedded_albedo: round % 3 == 0, ..Options::default() };
-            let planned = wanted(&scene, options).unwrap();
-            assert_eq!(planned, by_comparison(&scene, options).unwrap(), "{recipe}");
+            let lobes = parts(&scene);
+            let planned = wanted(&lobes, options).unwrap();
+            assert_eq!(planned, by_comparison(&lobes, options).unwrap(), "{recipe}");
             groups = groups.max(planned.0.len());
         }
     }

@@ -24,9 +24,9 @@ impl<'a> Entry<'a> {
         };
         Ok(match form.key {
             "schlick" if form.list().is_some() => {
-                Reflectance::Schlick(form.rgb("[0.95, 0.64, 0.54]", Entry::share)?)
+                Reflectance::Schlick(form.rgb("[0.95, 0.64, 0.54]", Entry::reflectance)?)
             }
-            "schlick" => Reflectance::Schlick([form.share()?; 3]),
+            "schlick" => Reflectance::Schlick([form.reflectance()?; 3]),
             "metal" => form.metal()?.into(),
             "dielectric" if form.table().is_some() => {
                 let eta = form.interval()?;
@@ -56,7 +56,7 @@ impl<'a> Entry<'a> {
         })
     }
 
-    fn share(self) -> Result<f64, SceneError> {
+    fn reflectance(self) -> Result<f64, SceneError> {
         self.number_where(|f0| (0.0..=1.0).contains(&f0), "a reflectance from 0 to 1")
     }
 

@@ -9,7 +9,7 @@ use microfacet_model::classic::Marginal;
 use microfacet_tables::Interval;
 
 use super::write::range;
-use super::{Entry, MATERIAL_KEYS, MEASURED_KEYS};
+use super::{Beside, Entry, LOBE_KEYS, MEASURED_KEYS};
 use crate::distribution::{Distribution, DistributionKind, Named};
 use crate::input;
 use crate::input::angles::Angles;
@@ -20,31 +20,41 @@ use crate::table_spec::GAMMA_MIN;
 type Lobe = LobeSpec<Distribution>;
 
 impl Entry<'_> {
-    pub(super) fn lobe(self) -> Result<Lobe, SceneError> {
+    /// The lobe that a table describes beside its other keys; without a `gamma` of its own it has
+    /// that of `core`.
+    pub(super) fn lobe(
+        self,
+        [before, after]: Beside,
+        core: Option<Interval>,
+    ) -> Result<Lobe, SceneError> {
         if let Some(distribution) = self.field("distribution") {
-            return distribution.distribution(self);
+            let common = [before, &["distribution"], after].concat();
+            return distribution.distribution(self, &common);
         }
-        self.only_keys(&MATERIAL_KEYS)?;
+        self.only_keys(&[before, &LOBE_KEYS, after].concat())?;
         let roughness = self.required("sigma", "0.3")?.sigma()?;
-        let gamma = self.required("gamma", "2.0")?.gamma()?;
+        let gamma = match (self.field("gamma"), core) {
+            (None, Some(core)) => core,
+            _ => self.required("gamma", "2.0")?.gamma()?,
+        };
         let theta = match (self.field("theta"), self.field("degrees")) {
             (Some(theta), _) => Some(theta.theta(self.angles()?, roughness, gamma)?),
             (None, Some(degrees)) => {
-                return degrees.invalid(
-                    "degrees is the unit of theta, and the material has no `theta`; remove degrees",
-                );
+                return degrees.invalid(format!(
+                    "degrees is the unit of theta, and the {} has no `theta`; remove degrees",
+                    self.key
+                ));
             }
             (None, None) => None,
         };
         Ok(Lobe { theta, ..Lobe::family(roughness, gamma) })
     }
 
-    /// The lobe of a material with a `distribution`; of the family if the distribution is a member.
-    fn distribution(self, material: Self) -> Result<Lobe, SceneError> {
-        let common = ["name", "distribution", "fresnel", "masking"];
+    /// The lobe of a table with a `distribution`; of the family if the distribution is a member.
+    fn distribution(self, material: Self, common: &[&str]) -> Result<Lobe, SceneError> {
         let distribution = if let Some(name) = self.text() {
             let kind = DistributionKind::by_name(name).or_else(|why| self.invalid(why))?;
-            material.only_keys(&[&common, kind.parameters()].concat())?;
+            material.only_keys(&[common, kind.parameters()].concat())?;
             let parameter = |key: &&'static str| match material.field(key) {
                 Some(value) => value.number(),
                 // The example is of an exponent, or else of a width or a shape.
@@ -56,7 +66,7 @@ impl Entry<'_> {
             let values = kind.parameters().iter().map(parameter).collect::<Result<_, _>>()?;
             Distribution::Named(Named { kind, values })
         } else {
-            material.only_keys(&common)?;
+            material.only_keys(common)?;
             self.measured()?
         };
         let built = distribution.build().or_else(|why| self.invalid(why))?;

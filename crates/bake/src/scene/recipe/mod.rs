@@ -5,8 +5,10 @@
 //! name = "frosted glass"
 //! sigma = 0.454                  # or [x, y], or { min = .., max = .. }; 0 is smooth
 //! gamma = 3.0                    # or "inf" (Beckmann), or { min = .., max = .. }
-//! fresnel = { dielectric = 1.5 } # optional, as is masking
+//! fresnel = { dielectric = 1.5 } # optional, as all that follows
 //! masking = "height-correlated"
+//! haze = { weight = 0.3, sigma = 0.8 }
+//! retroreflection = 0.1
 //! ```
 //!
 //! `docs/recipe.md` has every key, its range and its default. A distribution that is a member of
@@ -30,12 +32,16 @@ use self::write::quoted;
 pub(super) use self::write::write;
 use super::error::{Lines, did_you_mean_key};
 use super::limits::{self, Budget};
-use super::{Format, Material, Origin, Place, Scene, SceneError, SceneErrorKind};
+use super::{Format, Haze, LobeSpec, Material, Origin, Place, Scene, SceneError, SceneErrorKind};
+use crate::distribution::Distribution;
 use crate::input;
 
 // `docs/recipe.md` has every key.
-const MATERIAL_KEYS: [&str; 8] =
-    ["name", "sigma", "gamma", "theta", "degrees", "distribution", "fresnel", "masking"];
+const LOBE_KEYS: [&str; 5] = ["sigma", "gamma", "theta", "degrees", "distribution"];
+/// The keys before and after those of a lobe.
+type Beside = [&'static [&'static str]; 2];
+const MATERIAL_KEYS: Beside = [&["name"], &["fresnel", "masking", "haze", "retroreflection"]];
+const HAZE_KEYS: Beside = [&["weight"], &[]];
 const MEASURED_KEYS: [&str; 2] = ["measured", "degrees"];
 const FRESNEL_KEYS: [&str; 4] = ["schlick", "metal", "conductor", "dielectric"];
 const CONDUCTOR_KEYS: [&str; 2] = ["eta", "k"];
@@ -283,7 +289,19 @@ impl<'a> Entry<'a> {
             return self
                 .invalid("a material must be a table: head each material with [[material]]");
         }
-        let lobe = self.lobe()?;
+        let lobe = self.lobe(MATERIAL_KEYS, None)?;
+        let haze = self.field("haze").map(|haze| haze.haze(&lobe)).transpose()?;
+        let retroreflection = self.field("retroreflection").map(Entry::retroreflection);
+        let retroreflection = retroreflection.transpose()?.unwrap_or(MaterialEntry::SPECULAR);
+        let tilts = [Some(&lobe), haze.as_ref().map(|haze| &haze.lobe)];
+        if retroreflection != MaterialEntry::SPECULAR
+            && tilts.into_iter().flatten().any(|lobe| lobe.theta.is_some())
+        {
+            return self.invalid(
+                "retroreflection off a lobe with theta is not reciprocal, since half a turn about \
+                 the macro normal changes a tilted lobe; remove one of the two",
+            );
+        }
         let name = self.required("name", "\"gold\"")?;
         let Some(text) = name.text().filter(|text| !text.is_empty()) else {
             return name.expected("a text that is not empty");
@@ -291,13 +309,37 @@ impl<'a> Entry<'a> {
         Ok(Material {
             name: text.to_owned(),
             lobe,
-            haze: None,
-            retroreflection: MaterialEntry::SPECULAR,
+            haze,
+            retroreflection,
             fresnel: self.field("fresnel").map(Entry::fresnel).transpose()?,
             masking: self.field("masking").map(Entry::masking).transpose()?,
             origin: Origin { format: Format::Recipe, place: self.place(), lobe: None },
             used: true,
         })
+    }
+
+    /// The second lobe of a material with this core.
+    fn haze(self, core: &LobeSpec<Distribution>) -> Result<Haze<Distribution>, SceneError> {
+        if self.table().is_none() {
+            return self.expected("a table such as haze = { weight = 0.3, sigma = 0.5 }");
+        }
+        let gamma = core.distribution.is_none().then_some(core.gamma);
+        let lobe = self.lobe(HAZE_KEYS, gamma)?;
+        let weight = self.required("weight", "0.3")?;
+        Ok(Haze { weight: weight.share("the share of the haze, from 0 to 1")?, lobe })
+    }
+
+    fn retroreflection(self) -> Result<Interval, SceneError> {
+        self.share("the share of the reflected light that goes back to where it comes from, 0 to 1")
+    }
+
+    /// A number or a range within [0, 1].
+    fn share(self, what: &str) -> Result<Interval, SceneError> {
+        let share = self.interval()?;
+        if share.min >= 0.0 && share.max <= 1.0 {
+            return Ok(share);
+        }
+        self.out_of_range(what)
     }
 
     fn interval(self) -> Result<Interval, SceneError> {

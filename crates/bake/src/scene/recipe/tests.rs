@@ -8,8 +8,8 @@ use super::*;
 fn the_page_of_recipes_has_every_key() {
     let page = include_str!("../../../../../docs/recipe.md");
     let keys: [&[&str]; 5] =
-        [&MATERIAL_KEYS, &MEASURED_KEYS, &FRESNEL_KEYS, &CONDUCTOR_KEYS, &RANGE_KEYS];
-    for key in keys.concat() {
+        [&LOBE_KEYS, &MEASURED_KEYS, &FRESNEL_KEYS, &CONDUCTOR_KEYS, &RANGE_KEYS];
+    for key in [&keys[..], &MATERIAL_KEYS, &HAZE_KEYS].concat().concat() {
         assert!(page.contains(&format!("`{key}`")), "docs/recipe.md: no `{key}`");
     }
 }
@@ -29,11 +29,12 @@ const A: &str = "[[material]]\nname = \"a\"\nsigma = 0.3\ngamma = 3\n";
 const B: &str = "  [[material]] # b\nname = \"b\"\nsigma = [0.3,\n\n 0.1]\ngamma = 3\n";
 
 /// Texts between materials, some of them valid there.
-const ODD: [&str; 32] = [
+const ODD: [&str; 33] = [
     "",
     "\u{feff}",
     "# [[material]]\n",
     "[material.fresnel]\nschlick = 0.04\n",
+    "[material.haze]\nweight = 0.5\nsigma = 0.5\n",
     "[[material.fresnel]]\nschlick = 0.04\n",
     "[material]\nname = \"c\"\n",
     "[[\"material\"]]\nname = \"c\"\nsigma = 1\ngamma = 2\n",

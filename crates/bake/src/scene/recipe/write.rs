@@ -2,11 +2,11 @@
 
 use std::fmt::Write as _;
 
-use microfacet_tables::{Interval, MaterialEntry};
+use microfacet_tables::{Interval, LobeSpec, MaterialEntry};
 
 use crate::distribution::{Distribution, Named};
 use crate::input::angles::Angles;
-use crate::scene::{Reflectance, Roughness};
+use crate::scene::{Haze, Reflectance, Roughness};
 
 /// Writes the recipe that [`read`](super::read) turns into the same materials.
 pub(in crate::scene) fn write(materials: &[MaterialEntry]) -> String {
@@ -15,31 +15,9 @@ pub(in crate::scene) fn write(materials: &[MaterialEntry]) -> String {
 
 fn entry(material: &MaterialEntry) -> String {
     let mut text = format!("[[material]]\nname = {}\n", quoted(&material.name));
-    let sigma = match material.lobe.roughness {
-        Roughness::Smooth => range(Interval::point(0.0)),
-        Roughness::Isotropic(sigma) => range(sigma),
-        Roughness::Anisotropic { x, y } => format!("[{}, {}]", range(x), range(y)),
-    };
     // Writing to a string cannot fail.
-    let label = material.lobe.distribution.as_ref();
-    let _ = match label.map(|label| (Distribution::measured_of(label), label.parse::<Named>())) {
-        None => writeln!(text, "sigma = {sigma}\ngamma = {}", range(material.lobe.gamma)),
-        Some((Some((file, angles)), _)) => {
-            let unit = if angles == Angles::Degrees { ", degrees = true" } else { "" };
-            writeln!(text, "distribution = {{ measured = {}{unit} }}", quoted(file))
-        }
-        // A label that no bake writes and no recipe can express.
-        Some((None, Err(_))) => writeln!(text, "# of the distribution {label:?}"),
-        Some((None, Ok(named))) => {
-            let number = |x: f64| range(Interval::point(x));
-            let pairs = named.kind.parameters().iter().zip(&named.values);
-            let values: String =
-                pairs.map(|(key, x)| format!("\n{key} = {}", number(*x))).collect();
-            writeln!(text, "distribution = {}{values}", quoted(named.kind.name()))
-        }
-    };
-    if let Some(theta) = material.lobe.theta {
-        let _ = writeln!(text, "theta = {theta:?}");
+    for key in lobe(&material.lobe) {
+        let _ = writeln!(text, "{key}");
     }
     if let Some(fresnel) = material.fresnel {
         let value = match fresnel {
@@ -58,7 +36,46 @@ fn entry(material: &MaterialEntry) -> String {
     if let Some(masking) = material.masking {
         let _ = writeln!(text, "masking = \"{}\"", masking.name());
     }
+    if let Some(Haze { weight, lobe: of }) = &material.haze {
+        let keys = [vec![format!("weight = {}", range(*weight))], lobe(of)].concat();
+        // A comment would take the rest of the line with it.
+        let begin = if keys.iter().any(|key| key.starts_with('#')) { "# " } else { "" };
+        let _ = writeln!(text, "{begin}haze = {{ {} }}", keys.join(", "));
+    }
+    if material.is_retroreflecting() {
+        let _ = writeln!(text, "retroreflection = {}", range(material.retroreflection));
+    }
     text
+}
+
+/// The keys of a lobe with their values.
+fn lobe(lobe: &LobeSpec) -> Vec<String> {
+    let sigma = match lobe.roughness {
+        Roughness::Smooth => range(Interval::point(0.0)),
+        Roughness::Isotropic(sigma) => range(sigma),
+        Roughness::Anisotropic { x, y } => format!("[{}, {}]", range(x), range(y)),
+    };
+    let mut keys = match &lobe.distribution {
+        None => vec![format!("sigma = {sigma}"), format!("gamma = {}", range(lobe.gamma))],
+        Some(label) => outside(label),
+    };
+    keys.extend(lobe.theta.map(|theta| format!("theta = {theta:?}")));
+    keys
+}
+
+/// The keys of a distribution outside the family.
+fn outside(label: &str) -> Vec<String> {
+    if let Some((file, angles)) = Distribution::measured_of(label) {
+        let unit = if angles == Angles::Degrees { ", degrees = true" } else { "" };
+        return vec![format!("distribution = {{ measured = {}{unit} }}", quoted(file))];
+    }
+    let Ok(Named { kind, values }) = label.parse() else {
+        // A label that no bake writes and no recipe can express.
+        return vec![format!("# of the distribution {label:?}")];
+    };
+    let pairs = kind.parameters().iter().zip(values);
+    let values = pairs.map(|(key, x)| format!("{key} = {}", range(Interval::point(x))));
+    [format!("distribution = {}", quoted(kind.name()))].into_iter().chain(values).collect()
 }
 
 pub(super) fn quoted(text: &str) -> String {

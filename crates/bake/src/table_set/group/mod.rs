@@ -89,11 +89,11 @@ impl TableGroup {
     fn others(plan: &Plan) -> Result<Vec<Self>, BakeError> {
         let of = |distribution: &Distribution| {
             let label = distribution.label();
-            let has = |entry: &&MaterialEntry| entry.lobe.distribution.as_ref() == Some(&label);
-            let entry = plan.materials.iter().find(has);
+            let has = |entry: &MaterialEntry| entry.lobe.distribution.as_ref() == Some(&label);
+            let entry = plan.materials.iter().flat_map(MaterialEntry::parts).find(has);
             let entry =
                 entry.ok_or_else(|| BakeError::invalid(format!("no material has {label}")))?;
-            Ok(Self::Distribution(distribution.clone(), entry.clone()))
+            Ok(Self::Distribution(distribution.clone(), entry))
         };
         let albedos = plan.albedos.iter().map(|need| Ok(Self::Albedo(need.clone())));
         plan.distributions.iter().map(of).chain(albedos).collect()
