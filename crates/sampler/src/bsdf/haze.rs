@@ -24,8 +24,8 @@ use crate::bind_error::BindError;
 /// *Another* haze is a mixture of normals on one surface (d'Eon, Bitterli, Weidlich & Zeltner 2023,
 /// <https://doi.org/10.1145/3588432.3591486>): D = (1 − w) D_core + w D_haze, with one masking of
 /// both, Λ = (1 − w) Λ_core + w Λ_haze, since Λ is linear in D. There facets of the one kind mask
-/// those of the other. That one is a lobe, of which a BSDF is made as of any other. `docs/bsdf.md`
-/// has how much the two differ.
+/// those of the other. That one is a lobe, `distribution = "haze"` of a recipe, of which a BSDF is
+/// made as of any other. `docs/bsdf.md` has how much the two differ.
 ///
 /// ```
 /// # #[cfg(feature = "embedded")] {

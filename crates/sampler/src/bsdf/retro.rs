@@ -27,7 +27,8 @@ use crate::bind_error::BindError;
 ///
 /// ```
 /// # #[cfg(feature = "embedded")] {
-/// use microfacet_sampler::{Bsdf, BsdfSettings, Conductor, Metal, Retroreflective, Tables, Transport};
+/// use microfacet_sampler::{Bsdf, BsdfSettings, Conductor, Metal, Retroreflective};
+/// use microfacet_sampler::{Tables, Transport};
 ///
 /// let silver = Tables::embedded().student_t(0.1, 2.0)?;
 /// let silver: Conductor<_> = Conductor::new(silver, Metal::Silver, BsdfSettings::new())?;

@@ -116,14 +116,15 @@ impl Specimen {
         Self { lobe, gamma: (self.gamma * factor).max(GAMMA_MIN), ..self }
     }
 
-    /// Its facets alone, without a base and without compensation.
+    /// Its facets alone, without a base and without compensation; of a plastic, none of whose light
+    /// goes back, since they transmit.
     #[must_use]
     pub fn facets(self) -> Self {
-        let surface = match self.surface {
-            Surface::Plastic(eta, _) => Surface::Dielectric(eta),
-            other => other,
+        let (surface, back) = match self.surface {
+            Surface::Plastic(eta, _) => (Surface::Dielectric(eta), 0.0),
+            other => (other, self.back),
         };
-        Self { surface, compensation: Compensation::None, ..self }
+        Self { surface, back, compensation: Compensation::None, ..self }
     }
 
     /// The parts that it is a mixture of, with the share of each: itself, or a core and its haze.
