@@ -4,6 +4,7 @@
 mod common;
 
 mod error_maps;
+mod haze;
 mod max_bytes;
 mod plan;
 mod ranges;

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use microfacet_core::shape::gamma_of_s;
 use microfacet_sampler::Tables;
+use microfacet_tables::{LobeSpec, MaterialEntry};
 
 /// One material seen from one direction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -100,7 +101,8 @@ pub(super) fn draw_shape(shapes: &[[f64; 2]], random: &mut impl Rng) -> f64 {
 /// table.
 pub fn shapes(tables: &Tables) -> Vec<[f64; 2]> {
     let mut shapes = tables.shapes();
-    let ggx = tables.provenance().materials.iter().any(|entry| entry.lobe.is_ggx());
+    let mut lobes = tables.provenance().materials.iter().flat_map(MaterialEntry::lobes);
+    let ggx = lobes.any(LobeSpec::is_ggx);
     let beside = ggx && !shapes.is_empty() && !tables.tabulates(2.0);
     if beside || tables.tables().is_empty() {
         shapes.push([1.0; 2]);

@@ -15,8 +15,8 @@ use super::{Result, ensure, is_stream, print, summarize, unwritable, write_file}
     after_long_help = KEYS
 )]
 pub(super) struct Args {
-    /// A scene (.pbrt, .xml, .gltf, .glb, .mtlx) or recipe (.toml) whose materials to write; without
-    /// one, a recipe to start from.
+    /// A scene (.pbrt, .xml, .gltf, .glb, .mtlx) or recipe (.toml) whose materials to write;
+    /// without one, a recipe to start from.
     scene: Option<PathBuf>,
     /// File to write instead, which must not exist yet.
     #[arg(long, short, value_name = "FILE")]

@@ -37,28 +37,29 @@ fn plan(scene: &Scene) -> Result<Plan, NotCovered> {
 fn written(path: &Path, scene: &Scene, plan: &Plan) -> Result<String> {
     let (mut kept, mut comments) = (Scene::default(), String::new());
     let mut comment = |what: &str, name: &str, why: &str| {
-        let text = format!("{what} \"{name}\": {why}");
+        let text = format!("{what} {name}: {why}");
         comments += &wrapped("# ", &escape::line(&text), 2).replace("\n  ", "\n# ");
     };
+    let quoted = |name: &str| format!("\"{name}\"");
     let (mut lost, mut without) = (BTreeSet::new(), BTreeSet::new());
     for judged in plan.judged(scene) {
         let name = &judged.material.name[..];
         if let Verdict::NotCovered(why) = judged.verdict
             && lost.insert(name)
         {
-            comment("left out", name, &why.reason());
+            comment("left out", &quoted(name), &why.reason());
         }
         if let AlbedoVerdict::NotCovered(why) = judged.albedo
             && judged.material.fresnel.is_some()
             && without.insert(name)
         {
-            comment("without the `fresnel` of", name, &why.reason());
+            comment("without the `fresnel` of", &quoted(name), &why.reason());
         }
     }
     for material in &scene.materials {
         let name = &material.name[..];
         if !material.used {
-            comment("left out", name, "no geometry uses it");
+            comment("left out", &quoted(name), "no geometry uses it");
         } else if !lost.contains(name) {
             let mut material = material.clone();
             material.fresnel = material.fresnel.filter(|_| !without.contains(name));
@@ -67,7 +68,7 @@ fn written(path: &Path, scene: &Scene, plan: &Plan) -> Result<String> {
     }
     for Ignored { name, kind, reason, understood, .. } in &scene.ignored {
         let what = if *understood { "nothing to bake for" } else { "not understood:" };
-        comment(what, name, &format!("{kind}, {reason}"));
+        comment(what, &format!("\"{name}\" ({kind})"), reason);
     }
     let others = scene.materials.len() - kept.materials.len() + scene.ignored.len();
     ensure!(

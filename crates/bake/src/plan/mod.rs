@@ -7,6 +7,7 @@
 
 mod albedo;
 mod cost;
+mod judged;
 mod key;
 mod part;
 mod provenance;
@@ -16,7 +17,7 @@ mod stand_in;
 pub use albedo::{AlbedoVerdict, AlbedoWish, RequiredAlbedo};
 pub(crate) use cost::{AlbedoWork, Known, bare_bytes, growth, normals_work, radial_work};
 pub use cost::{Cost, on_threads, place_seconds, point_seconds};
-pub use part::Judged;
+pub use judged::Judged;
 pub use required_shapes::RequiredShapes;
 pub use stand_in::StandIn;
 

@@ -3,8 +3,8 @@
 use microfacet_core::shape::gamma_of_s;
 use microfacet_sampler::Tables;
 use microfacet_tables::{
-    Axis, Interpolation, Kind, LobeForm, LobeSpec, Mapping, Precision, Reflectance, Roughness,
-    Subject, Table,
+    Axis, Interpolation, Kind, LobeForm, LobeSpec, Mapping, MaterialEntry, Precision, Reflectance,
+    Roughness, Subject, Table,
 };
 
 use super::material::reflectance;
@@ -71,7 +71,8 @@ pub fn normals(set: &Tables) -> Vec<String> {
     if !lines.is_empty() {
         lines = vec![format!("gamma {}; every sigma", joined(&lines))];
     }
-    if set.provenance().materials.iter().any(|entry| entry.lobe.is_ggx()) && !set.tabulates(2.0) {
+    let mut lobes = set.provenance().materials.iter().flat_map(MaterialEntry::lobes);
+    if lobes.any(LobeSpec::is_ggx) && !set.tabulates(2.0) {
         lines.push("gamma 2 (GGX) in closed form".into());
     }
     for table in set.tables() {

@@ -50,7 +50,7 @@ pub(super) fn check_share(name: &str, Interval { min, max }: Interval) -> Result
 
 /// A haze as files state it, with the keys of a material's lobe.
 #[derive(Serialize, Deserialize)]
-#[serde(rename = "haze", deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "an object of `weight`, `sigma` and `gamma`")]
 pub(super) struct InFile {
     weight: Range,
     sigma: Sigma,

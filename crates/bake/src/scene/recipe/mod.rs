@@ -291,13 +291,15 @@ impl<'a> Entry<'a> {
         }
         let lobe = self.lobe(MATERIAL_KEYS, None)?;
         let haze = self.field("haze").map(|haze| haze.haze(&lobe)).transpose()?;
-        let retroreflection = self.field("retroreflection").map(Entry::retroreflection);
-        let retroreflection = retroreflection.transpose()?.unwrap_or(MaterialEntry::SPECULAR);
-        let tilts = [Some(&lobe), haze.as_ref().map(|haze| &haze.lobe)];
-        if retroreflection != MaterialEntry::SPECULAR
-            && tilts.into_iter().flatten().any(|lobe| lobe.theta.is_some())
+        let share = self.field("retroreflection");
+        let retroreflection = share.map_or(Ok(MaterialEntry::SPECULAR), Entry::retroreflection)?;
+        let lobes = [Some(&lobe), haze.as_ref().map(|haze| &haze.lobe)];
+        let is_tilted = lobes.into_iter().flatten().any(|lobe| lobe.theta.is_some());
+        if let Some(share) = share
+            && retroreflection != MaterialEntry::SPECULAR
+            && is_tilted
         {
-            return self.invalid(
+            return share.invalid(
                 "retroreflection off a lobe with theta is not reciprocal, since half a turn about \
                  the macro normal changes a tilted lobe; remove one of the two",
             );
