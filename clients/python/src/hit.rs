@@ -9,8 +9,7 @@ use microfacet_sampler::{
     Transport,
 };
 
-use crate::broadcast::{Argument, Chunks, One};
-use crate::material::{Material, of};
+use crate::broadcast::Chunks;
 
 /// A BSDF that is made for one item: of one lobe, of a lobe of arrays, or of other BSDFs, in boxes
 /// since they may be such as this.
@@ -103,23 +102,17 @@ impl Bsdf for Hit<'_> {
     }
 }
 
-/// A material as an argument whose items are of one type, whatever it is made of.
-#[derive(Clone, Copy)]
-pub(crate) struct Hits<'a>(pub(crate) &'a Material);
+/// Items of a material, as BSDFs of one type.
+pub(crate) struct HitChunks<'a>(Box<dyn AnyChunks<'a> + 'a>);
 
-impl<'a> Argument for Hits<'a> {
-    type Chunks = HitChunks<'a>;
-
-    fn shapes(&self, all: &mut Vec<(&'static str, Vec<usize>)>) {
-        of!(self.0, hits => hits.shapes(all));
-    }
-
-    fn chunks(&self, batch: &[usize]) -> HitChunks<'a> {
-        of!(self.0, hits => HitChunks(Box::new(hits.chunks(batch))))
+impl<'a> HitChunks<'a> {
+    pub(crate) fn of<C: Chunks + 'a>(chunks: C) -> Self
+    where
+        C::Item: Into<Hit<'a>>,
+    {
+        Self(Box::new(chunks))
     }
 }
-
-pub(crate) struct HitChunks<'a>(Box<dyn AnyChunks<'a> + 'a>);
 
 impl<'a> Chunks for HitChunks<'a> {
     type Item = Hit<'a>;

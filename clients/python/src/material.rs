@@ -12,9 +12,9 @@ use microfacet_sampler::{
 use pyo3::prelude::*;
 
 use crate::arrays::Kept;
-use crate::broadcast::broadcast;
+use crate::broadcast::{Argument, One, broadcast};
 use crate::distribution::Kind;
-use crate::hit::{Hit, Hits};
+use crate::hit::{Hit, HitChunks};
 use crate::lobe::PyLobe;
 use crate::surface::{Lobes, round_sigma};
 use crate::words::{Form, refused, unbound};
@@ -42,9 +42,8 @@ macro_rules! of {
     ($material:expr, $all:ident => $call:expr) => {{
         use microfacet_sampler::{Conductor, Dielectric, Plastic};
         use $crate::broadcast::Made;
-        use $crate::hit::Hits;
         use $crate::lobe::albedo_at;
-        use $crate::material::{hazy, interface_at, sent_back, single};
+        use $crate::material::{Hits, hazy, interface_at, sent_back, single};
         match $material {
             Material::One(bsdf) => {
                 let $all = One(&**bsdf);
@@ -198,6 +197,22 @@ pub(crate) fn hazy<'a>((core, haze, [weight]): (Hit<'a>, Hit<'a>, [f64; 1])) -> 
 /// What sends a share of the light back at one hit.
 pub(crate) fn sent_back<'a>((bsdf, [share]): (Hit<'a>, [f64; 1])) -> Retroreflective<Hit<'a>> {
     Retroreflective::at_hit(bsdf, share as f32)
+}
+
+/// A material as an argument whose items are of one type, whatever it is made of.
+#[derive(Clone, Copy)]
+pub(crate) struct Hits<'a>(pub(crate) &'a Material);
+
+impl<'a> Argument for Hits<'a> {
+    type Chunks = HitChunks<'a>;
+
+    fn shapes(&self, all: &mut Vec<(&'static str, Vec<usize>)>) {
+        of!(self.0, hits => hits.shapes(all));
+    }
+
+    fn chunks(&self, batch: &[usize]) -> HitChunks<'a> {
+        of!(self.0, hits => HitChunks::of(hits.chunks(batch)))
+    }
 }
 
 /// A dielectric of one bounce, of an index that was checked.

@@ -24,8 +24,8 @@ use crate::words;
 /// >>> def gold(sigma):
 /// ...     return microfacet.Conductor(microfacet.StudentT(sigma, 2.0), metal="gold")
 /// >>> hazy = microfacet.Haze(gold(0.1), gold(0.45), weight=0.3)
-/// >>> hazy
-/// Haze(Conductor(StudentT(sigma=0.1, gamma=2)), Conductor(StudentT(sigma=0.45, gamma=2)), weight=0.3)
+/// >>> hazy.haze, hazy.weight
+/// (Conductor(StudentT(sigma=0.45, gamma=2)), 0.3)
 /// >>> v, l = [0.6, 0.0, 0.8], [0.0, 0.0, 1.0]
 /// >>> core, haze, both = (bsdf.eval(v, l)[0] for bsdf in (hazy.core, hazy.haze, hazy))
 /// >>> bool(abs(both / (0.7 * core + 0.3 * haze) - 1) < 1e-6)
