@@ -34,15 +34,17 @@ pub(crate) struct PyBsdf {
     pub(crate) bsdf: Arc<Material>,
     /// What `repr` shows.
     pub(crate) about: String,
+    /// How many BSDFs of one lobe a call evaluates.
+    pub(crate) parts: usize,
 }
 
 impl PyBsdf {
     pub(crate) fn new(bsdf: impl Into<AnyBsdf>, about: String) -> Self {
-        Self { bsdf: Arc::new(Material::of(bsdf)), about }
+        Self { bsdf: Arc::new(Material::of(bsdf)), about, parts: 1 }
     }
 
-    pub(crate) fn made(bsdf: Material, about: String) -> PyClassInitializer<Self> {
-        PyClassInitializer::from(Self { bsdf: Arc::new(bsdf), about })
+    pub(crate) fn made(bsdf: Material, about: String, parts: usize) -> PyClassInitializer<Self> {
+        PyClassInitializer::from(Self { bsdf: Arc::new(bsdf), about, parts })
     }
 
     /// The plastic, if it is one, of one lobe.
@@ -230,7 +232,7 @@ impl PyConductor {
         let about = format!("Conductor({})", lobe.repr()?);
         let form = Form::new(masking, compensation, stand_in)?;
         let bsdf = Material::conductor(lobe.get(), fresnel, &form)?;
-        Ok(PyBsdf::made(bsdf, about).add_subclass(Self {}))
+        Ok(PyBsdf::made(bsdf, about, 1).add_subclass(Self {}))
     }
 }
 
@@ -267,7 +269,7 @@ impl PyDielectric {
         let about = format!("Dielectric({}, eta={eta})", lobe.repr()?);
         let form = Form::new(masking, compensation, stand_in)?;
         let bsdf = Material::dielectric(lobe.get(), eta, &form)?;
-        Ok(PyBsdf::made(bsdf, about).add_subclass(Self {}))
+        Ok(PyBsdf::made(bsdf, about, 1).add_subclass(Self {}))
     }
 }
 
@@ -306,7 +308,7 @@ impl PyPlastic {
         let base = words::reflectance("base", base)?;
         let form = Form::new(masking, compensation, stand_in)?;
         let bsdf = Material::plastic(lobe.get(), eta, base, &form)?;
-        Ok(PyBsdf::made(bsdf, about).add_subclass(Self {}))
+        Ok(PyBsdf::made(bsdf, about, 1).add_subclass(Self {}))
     }
 
     /// The shares of the light of views v that one bounce off the coat reflects and transmits,

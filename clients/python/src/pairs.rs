@@ -12,13 +12,18 @@ use crate::bsdf::PyBsdf;
 use crate::material::Material;
 use crate::words;
 
+/// The most parts of a BSDF: some thirty pairs of a pair with itself would be more than memory
+/// holds, and some thousands of one in another deeper than a stack.
+const PARTS_MOST: usize = 64;
+
 /// A core with haze around it, any two BSDFs: f = (1 - weight) f of core + weight f of haze.
 ///
 /// weight lies in [0, 1], a number or an array, which broadcasts as those of sigma and gamma do;
 /// both parts may be of arrays, too. They share light as two materials side by side, too small to
 /// be seen apart: the albedo is (1 - weight) E of core + weight E of haze, and where both parts are
 /// compensated, so is the whole. A sample is drawn from one part and weighted by both. This is
-/// specular_haze of OpenPBR. Of two dielectrics, eta should be the same.
+/// specular_haze of OpenPBR. Of two dielectrics, eta should be the same. A BSDF may have 64 parts at
+/// most, of which those that send light back count twice.
 ///
 /// >>> import microfacet
 /// >>> def gold(sigma):
@@ -55,10 +60,11 @@ impl PyHaze {
         words::lead_on("Haze", others)?;
         let weight = share("weight", "the share of the haze", weight)?;
         let [first, second] = [core, haze].map(Bound::get);
+        let parts = limited(first.parts + second.parts)?;
         let about = format!("Haze({}, {}, {})", first.about, second.about, written(&weight));
         let bsdf = Material::haze(&first.bsdf, &second.bsdf, &weight)?;
         let (core, haze) = (core.clone().unbind(), haze.clone().unbind());
-        Ok(PyBsdf::made(bsdf, about).add_subclass(Self { core, haze, weight }))
+        Ok(PyBsdf::made(bsdf, about, parts).add_subclass(Self { core, haze, weight }))
     }
 
     /// The share of the haze: a number, or an array.
@@ -105,10 +111,11 @@ impl PyRetroreflective {
         words::lead_on("Retroreflective", others)?;
         let share = self::share("share", "the share of the light that goes back", share)?;
         let of = bsdf.get();
+        let parts = limited(2 * of.parts)?;
         let about = format!("Retroreflective({}, {})", of.about, written(&share));
         let made = Material::retroreflective(&of.bsdf, &share)?;
         let bsdf = bsdf.clone().unbind();
-        Ok(PyBsdf::made(made, about).add_subclass(Self { bsdf, share }))
+        Ok(PyBsdf::made(made, about, parts).add_subclass(Self { bsdf, share }))
     }
 
     /// The share of the light that goes back: a number, or an array.
@@ -122,6 +129,17 @@ impl PyRetroreflective {
 fn share(name: &'static str, meaning: &str, value: Option<&Any>) -> PyResult<Arc<Kept<f64, 1>>> {
     let missing = || PyTypeError::new_err(format!("{name} is missing: {meaning}, in [0, 1]"));
     Input::shares(name, value.ok_or_else(missing)?)?.kept().map(Arc::new)
+}
+
+/// A number of parts that are not too many.
+fn limited(parts: usize) -> PyResult<usize> {
+    match parts {
+        0..=PARTS_MOST => Ok(parts),
+        _ => Err(words::refused(format!(
+            "a BSDF of {parts} parts: it may have {PARTS_MOST} at most, where those that send light \
+             back count twice; make it of fewer"
+        ))),
+    }
 }
 
 /// A share as `repr` shows it.

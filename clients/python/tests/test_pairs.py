@@ -233,6 +233,23 @@ def test_arguments_that_are_missing_or_of_another_type(call, words):
         assert word in str(why.value), why.value
 
 
+def test_parts_are_limited():
+    """Of pairs of pairs, which else would take all memory, or a stack."""
+    for make in [
+        lambda bsdf: microfacet.Haze(bsdf, bsdf, 0.5),
+        lambda bsdf: microfacet.Haze(bsdf, bsdf, [0.5]),
+        lambda bsdf: microfacet.Haze(bsdf, gold(0.5), [0.5]),
+        lambda bsdf: microfacet.Retroreflective(bsdf, 0.5),
+    ]:
+        bsdf = gold(0.2)
+        with pytest.raises(ValueError, match=r"parts: it may have 64 at most.* make it of fewer"):
+            for _ in range(100):
+                bsdf = make(bsdf)
+                last = bsdf
+        assert np.isfinite(last.eval(V, V)).all() and (last.eval(V, V) > 0).all()
+        assert np.isfinite(last.sample(V, np.linspace(0, 1, 5000), [0.3, 0.7]).weight).all()
+
+
 RECIPE = """
 [[material]]
 name = "hazy gold"
