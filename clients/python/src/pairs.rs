@@ -22,8 +22,8 @@ const PARTS_MOST: usize = 64;
 /// both parts may be of arrays, too. They share light as two materials side by side, too small to
 /// be seen apart: the albedo is (1 - weight) E of core + weight E of haze, and where both parts are
 /// compensated, so is the whole. A sample is drawn from one part and weighted by both. This is
-/// specular_haze of OpenPBR. Of two dielectrics, eta should be the same. A BSDF may have 64 parts at
-/// most, of which those that send light back count twice.
+/// specular_haze of OpenPBR. Of two dielectrics, eta should be the same. A BSDF may have 64 parts
+/// at most, of which those that send light back count twice.
 ///
 /// >>> import microfacet
 /// >>> def gold(sigma):
