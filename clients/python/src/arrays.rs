@@ -2,6 +2,7 @@
 
 use std::array;
 
+use microfacet_sampler::BindError;
 use numpy::{
     Element, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray,
     PyUntypedArrayMethods,
@@ -164,6 +165,18 @@ impl<'py, T: Number> Input<'py, T, 1> {
     }
 }
 
+impl<'py> Input<'py, f64, 1> {
+    /// Shares of light, in [0, 1], which NaN is not.
+    pub(crate) fn shares(name: &'static str, value: &Any<'py>) -> PyResult<Self> {
+        let input = Self::new(name, value)?;
+        let is_off = |&[x]: &[f64; 1]| !(0.0..=1.0).contains(&(x as f32));
+        // The name and the index stand before it.
+        let why = |[x]: [f64; 1]| BindError::Share { name: "", value: x as f32 }.to_string();
+        input.check(is_off, |x| why(x).trim_start().to_owned())?;
+        Ok(input)
+    }
+}
+
 impl Layout {
     /// An item's index as Python writes it; nothing of a single one.
     fn place(&self, at: usize) -> String {
@@ -204,6 +217,16 @@ impl<T: Number> Kept<T, 1> {
         self.items.iter().map(|&[x]| x)
     }
 
+    /// The number, if it is one.
+    pub(crate) fn one(&self) -> Option<T> {
+        self.layout.batch.is_empty().then(|| self.items[0][0])
+    }
+
+    /// The name of the argument.
+    pub(crate) fn name(&self) -> &'static str {
+        self.layout.name
+    }
+
     /// Its shape.
     pub(crate) fn batch(&self) -> &[usize] {
         &self.layout.batch
@@ -211,9 +234,9 @@ impl<T: Number> Kept<T, 1> {
 
     /// As an array of NumPy, or as a number.
     pub(crate) fn array<'py>(&self, py: Python<'py>) -> PyResult<Any<'py>> {
-        match self.items[..] {
-            [[one]] if self.layout.batch.is_empty() => Ok(PyFloat::new(py, one.into()).into_any()),
-            _ => each(py, self, Cost::Lookup, |x| x),
+        match self.one() {
+            Some(one) => Ok(PyFloat::new(py, one.into()).into_any()),
+            None => each(py, self, Cost::Lookup, |x| x),
         }
     }
 }

@@ -86,6 +86,32 @@ impl<'a, L: Sync> Chunks for One<'a, L> {
     }
 }
 
+/// Something made of the items of an argument, or of several.
+pub(crate) struct Made<A, F>(pub(crate) A, pub(crate) F);
+
+impl<A: Argument, I, F> Argument for Made<A, F>
+where
+    F: Fn(<A::Chunks as Chunks>::Item) -> I + Copy + Sync,
+{
+    type Chunks = Made<A::Chunks, F>;
+
+    fn shapes(&self, all: &mut Vec<(&'static str, Vec<usize>)>) {
+        self.0.shapes(all);
+    }
+    fn chunks(&self, batch: &[usize]) -> Self::Chunks {
+        Made(self.0.chunks(batch), self.1)
+    }
+}
+
+impl<C: Chunks, I, F: Fn(C::Item) -> I + Copy + Sync> Chunks for Made<C, F> {
+    type Item = I;
+
+    fn chunk(&self, range: Range<usize>) -> impl Fn(usize) -> I {
+        let (item, make) = (self.0.chunk(range), self.1);
+        move |i| make(item(i))
+    }
+}
+
 macro_rules! tuple {
     ($($one:ident $at:tt),+) => {
         impl<$($one: Argument),+> Argument for ($($one,)+) {

@@ -1,5 +1,7 @@
 //! Complete materials.
 
+use std::sync::Arc;
+
 use pyo3::basic::CompareOp;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -29,18 +31,25 @@ use crate::words::{self, Form, refused, unbound};
 /// (3,)
 #[pyclass(name = "Bsdf", module = "microfacet", subclass, frozen)]
 pub(crate) struct PyBsdf {
-    bsdf: Material,
-    about: String,
+    pub(crate) bsdf: Arc<Material>,
+    /// What `repr` shows.
+    pub(crate) about: String,
+    /// How many BSDFs of one lobe a call evaluates.
+    pub(crate) parts: usize,
 }
 
 impl PyBsdf {
     pub(crate) fn new(bsdf: impl Into<AnyBsdf>, about: String) -> Self {
-        Self { bsdf: Material::of(bsdf), about }
+        Self { bsdf: Arc::new(Material::of(bsdf)), about, parts: 1 }
+    }
+
+    pub(crate) fn made(bsdf: Material, about: String, parts: usize) -> PyClassInitializer<Self> {
+        PyClassInitializer::from(Self { bsdf: Arc::new(bsdf), about, parts })
     }
 
     /// The plastic, if it is one, of one lobe.
     fn plastic(&self) -> PyResult<&Plastic<Lobe>> {
-        if let Material::One(bsdf) = &self.bsdf
+        if let Material::One(bsdf) = &*self.bsdf
             && let AnyBsdf::Plastic(plastic) = &**bsdf
         {
             return Ok(plastic);
@@ -95,7 +104,7 @@ impl PyBsdf {
     ) -> PyResult<Any<'py>> {
         let mode = words::transport(transport)?;
         let (v, l) = (Input::directions("v", v)?, Input::directions("l", l)?);
-        of!(&self.bsdf, all => each(py, (all, &v, &l), Cost::Lookup, |(bsdf, v, l)| {
+        of!(&*self.bsdf, all => each(py, (all, &v, &l), Cost::Lookup, |(bsdf, v, l)| {
             let (v, l): ([f32; 3], [f32; 3]) = (v, l);
             bsdf.eval(v, l, mode)
         }))
@@ -104,7 +113,7 @@ impl PyBsdf {
     /// The density with which sample draws l for v, per steradian.
     fn pdf<'py>(&self, py: Python<'py>, v: &Any<'py>, l: &Any<'py>) -> PyResult<Any<'py>> {
         let (v, l) = (Input::directions("v", v)?, Input::directions("l", l)?);
-        of!(&self.bsdf, all => each(py, (all, &v, &l), Cost::Lookup, |(bsdf, v, l)| {
+        of!(&*self.bsdf, all => each(py, (all, &v, &l), Cost::Lookup, |(bsdf, v, l)| {
             let (v, l): ([f32; 3], [f32; 3]) = (v, l);
             [bsdf.pdf(v, l)]
         }))
@@ -124,7 +133,7 @@ impl PyBsdf {
         let mode = words::transport(transport)?;
         let (v, choice) = (Input::directions("v", v)?, Input::new("choice", choice)?);
         let u = Input::new("u", u)?;
-        let all = of!(&self.bsdf, all => {
+        let all = of!(&*self.bsdf, all => {
             each(py, (all, &v, &choice, &u), Cost::Lookup, |(bsdf, v, [choice], u)| {
                 drawn(bsdf.sample_with_pdf(v, choice, u, mode))
             })
@@ -151,7 +160,7 @@ impl PyBsdf {
     /// Whether all events are deltas, so that eval is 0 everywhere.
     #[getter]
     fn is_delta<'py>(&self, py: Python<'py>) -> PyResult<Any<'py>> {
-        of!(&self.bsdf, all => flags(py, all, |bsdf| bsdf.is_delta()))
+        of!(&*self.bsdf, all => flags(py, all, |bsdf| bsdf.is_delta()))
     }
 
     fn __repr__(&self) -> &str {
@@ -223,7 +232,7 @@ impl PyConductor {
         let about = format!("Conductor({})", lobe.repr()?);
         let form = Form::new(masking, compensation, stand_in)?;
         let bsdf = Material::conductor(lobe.get(), fresnel, &form)?;
-        Ok(PyClassInitializer::from(PyBsdf { bsdf, about }).add_subclass(Self {}))
+        Ok(PyBsdf::made(bsdf, about, 1).add_subclass(Self {}))
     }
 }
 
@@ -260,7 +269,7 @@ impl PyDielectric {
         let about = format!("Dielectric({}, eta={eta})", lobe.repr()?);
         let form = Form::new(masking, compensation, stand_in)?;
         let bsdf = Material::dielectric(lobe.get(), eta, &form)?;
-        Ok(PyClassInitializer::from(PyBsdf { bsdf, about }).add_subclass(Self {}))
+        Ok(PyBsdf::made(bsdf, about, 1).add_subclass(Self {}))
     }
 }
 
@@ -299,7 +308,7 @@ impl PyPlastic {
         let base = words::reflectance("base", base)?;
         let form = Form::new(masking, compensation, stand_in)?;
         let bsdf = Material::plastic(lobe.get(), eta, base, &form)?;
-        Ok(PyClassInitializer::from(PyBsdf { bsdf, about }).add_subclass(Self {}))
+        Ok(PyBsdf::made(bsdf, about, 1).add_subclass(Self {}))
     }
 
     /// The shares of the light of views v that one bounce off the coat reflects and transmits,

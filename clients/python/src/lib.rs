@@ -2,11 +2,10 @@
 //!
 //! [`arrays`] takes arguments, of which [`broadcast`] runs functions on all cores; [`words`] turns
 //! words and errors into those of Python. [`tables`] loads and bakes sets, [`lobe`], [`material`]
-//! and [`bsdf`] are the run-time crate, [`exact`] the model, [`distribution`] what lobes of both
-//! have in common. [`surface`] is roughness and shape of one lobe or many, [`set`] what lobes of a
-//! set share.
-//! [`shape`] has the tables of a shape for lookups elsewhere, and [`farm`] what processes bake
-//! together.
+//! and [`bsdf`] are the run-time crate, [`pairs`] BSDFs of BSDFs, which are any at a [`hit`].
+//! [`exact`] is the model, [`distribution`] what lobes of both have in common. [`surface`] is
+//! roughness and shape of one lobe or many, [`set`] what lobes of a set share. [`shape`] has the
+//! tables of a shape for lookups elsewhere, and [`farm`] what processes bake together.
 
 use pyo3::prelude::*;
 
@@ -16,8 +15,10 @@ mod bsdf;
 mod distribution;
 mod exact;
 mod farm;
+mod hit;
 mod lobe;
 mod material;
+mod pairs;
 mod set;
 mod shape;
 mod surface;
@@ -38,6 +39,8 @@ mod _microfacet {
     use crate::farm::user_cache;
     #[pymodule_export]
     use crate::lobe::{PyEllipsoid, PyLobe, PyStudentT};
+    #[pymodule_export]
+    use crate::pairs::{PyHaze, PyRetroreflective};
     #[pymodule_export]
     use crate::shape::{PyDielectricAlbedo, PyShape};
     #[pymodule_export]

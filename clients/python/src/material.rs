@@ -1,16 +1,20 @@
-//! Materials of one lobe, or of many: BSDFs that are made for each item.
+//! Materials of one lobe, or of many: BSDFs that are made for each item. [`crate::hit`] has those
+//! that materials are made of.
 
 use std::sync::Arc;
 
 use microfacet_sampler::albedo::FamilyAlbedo;
 use microfacet_sampler::lobe::FamilyLobe;
 use microfacet_sampler::{
-    AnyBsdf, BsdfSettings, Compensation, Conductor, ConductorFresnel, Dielectric, DielectricAt,
-    FamilyDielectric, Masking, Plastic,
+    AnyBsdf, BindError, Bsdf, BsdfSettings, Compensation, Conductor, ConductorFresnel, Dielectric,
+    DielectricAt, FamilyDielectric, Haze, Masking, Plastic, Retroreflective,
 };
 use pyo3::prelude::*;
 
+use crate::arrays::Kept;
+use crate::broadcast::{Argument, One, broadcast};
 use crate::distribution::Kind;
+use crate::hit::{Hit, HitChunks};
 use crate::lobe::PyLobe;
 use crate::surface::{Lobes, round_sigma};
 use crate::words::{Form, refused, unbound};
@@ -27,14 +31,19 @@ pub(crate) enum Material {
     Dielectric(Arc<Lobes>, f64, Masking),
     Interface(Arc<Lobes>, Box<FamilyDielectric>, Compensation),
     Plastic(Arc<Lobes>, Box<FamilyDielectric>, Compensation, [f32; 3]),
+    /// A core, a haze and its weight, of which one or all are of arrays.
+    Haze(Arc<Material>, Arc<Material>, Arc<Kept<f64, 1>>),
+    /// What sends light back, and its share.
+    Retroreflective(Arc<Material>, Arc<Kept<f64, 1>>),
 }
 
 /// Calls a function of BSDFs, an argument as others.
 macro_rules! of {
     ($material:expr, $all:ident => $call:expr) => {{
         use microfacet_sampler::{Conductor, Dielectric, Plastic};
+        use $crate::broadcast::Made;
         use $crate::lobe::albedo_at;
-        use $crate::material::{interface_at, single};
+        use $crate::material::{Hits, hazy, interface_at, sent_back, single};
         match $material {
             Material::One(bsdf) => {
                 let $all = One(&**bsdf);
@@ -71,6 +80,14 @@ macro_rules! of {
                     let at = interface_at(albedo, sigma, gamma);
                     Plastic::at_hit(lobes.lobe(sigma, gamma), at, *base, *compensation)
                 });
+                $call
+            }
+            Material::Haze(core, haze, weight) => {
+                let $all = Made((Hits(core), Hits(haze), &**weight), hazy);
+                $call
+            }
+            Material::Retroreflective(bsdf, share) => {
+                let $all = Made((Hits(bsdf), &**share), sent_back);
                 $call
             }
         }
@@ -128,6 +145,73 @@ impl Material {
         }
         let interface = Box::new(lobes.interface(&lobe.set, eta, form)?);
         Ok(Self::Plastic(Arc::clone(lobes), interface, form.compensation, base))
+    }
+
+    pub(crate) fn haze(
+        core: &Arc<Self>,
+        haze: &Arc<Self>,
+        weight: &Arc<Kept<f64, 1>>,
+    ) -> PyResult<Self> {
+        if let (Self::One(core), Self::One(haze), Some(weight)) = (&**core, &**haze, weight.one()) {
+            let bsdf = Haze::new(AnyBsdf::clone(core), AnyBsdf::clone(haze), weight as f32);
+            return bsdf.map(Self::of).map_err(unbound);
+        }
+        broadcast(&(Hits(core), Hits(haze), &**weight))?;
+        Ok(Self::Haze(Arc::clone(core), Arc::clone(haze), Arc::clone(weight)))
+    }
+
+    pub(crate) fn retroreflective(bsdf: &Arc<Self>, share: &Arc<Kept<f64, 1>>) -> PyResult<Self> {
+        // What is made at a hit would keep its light.
+        if let Some(transmits) = bsdf.sends_none_back() {
+            return Err(unbound(BindError::NoRetroreflection { transmits }));
+        }
+        if let (Self::One(bsdf), Some(share)) = (&**bsdf, share.one()) {
+            let bsdf = Retroreflective::new(AnyBsdf::clone(bsdf), share as f32);
+            return bsdf.map(Self::of).map_err(unbound);
+        }
+        broadcast(&(Hits(bsdf), &**share))?;
+        Ok(Self::Retroreflective(Arc::clone(bsdf), Arc::clone(share)))
+    }
+
+    /// Whether it transmits light, of a material that cannot send light back; else its lobe is
+    /// tilted.
+    fn sends_none_back(&self) -> Option<bool> {
+        match self {
+            Self::One(bsdf) => {
+                let transmits = bsdf.transmits();
+                (transmits || !bsdf.is_symmetric()).then_some(transmits)
+            }
+            Self::Dielectric(..) | Self::Interface(..) => Some(true),
+            // Lobes of arrays are upright.
+            Self::Conductor(..) | Self::Plastic(..) | Self::Retroreflective(..) => None,
+            Self::Haze(core, haze, _) => core.sends_none_back().or_else(|| haze.sends_none_back()),
+        }
+    }
+}
+
+/// A core, a haze and its weight at one hit.
+pub(crate) fn hazy<'a>((core, haze, [weight]): (Hit<'a>, Hit<'a>, [f64; 1])) -> Haze<Hit<'a>> {
+    Haze::at_hit(core, haze, weight as f32)
+}
+
+/// What sends a share of the light back at one hit.
+pub(crate) fn sent_back<'a>((bsdf, [share]): (Hit<'a>, [f64; 1])) -> Retroreflective<Hit<'a>> {
+    Retroreflective::at_hit(bsdf, share as f32)
+}
+
+/// A material as an argument whose items are of one type, whatever it is made of.
+#[derive(Clone, Copy)]
+pub(crate) struct Hits<'a>(pub(crate) &'a Material);
+
+impl<'a> Argument for Hits<'a> {
+    type Chunks = HitChunks<'a>;
+
+    fn shapes(&self, all: &mut Vec<(&'static str, Vec<usize>)>) {
+        of!(self.0, hits => hits.shapes(all));
+    }
+
+    fn chunks(&self, batch: &[usize]) -> HitChunks<'a> {
+        of!(self.0, hits => HitChunks::of(hits.chunks(batch)))
     }
 }
 

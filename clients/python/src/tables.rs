@@ -102,14 +102,16 @@ impl PyTables {
         Py::new(py, PyEllipsoid::of(&self.set, sigma, theta, gamma)?)
     }
 
-    /// The lobe of a material by its name in the recipe that the set was baked from.
+    /// The lobe of a material by its name in the recipe that the set was baked from: the core, if
+    /// it has a haze.
     fn material(&self, py: Python<'_>, name: &str) -> PyResult<Py<PyLobe>> {
         let lobe = self.set.material(name).map_err(refused)?;
         let made = Made::Material(name.into());
         Py::new(py, PyLobe::new(lobe, &self.set, made, format!("Lobe({name:?})")))
     }
 
-    /// The BSDF of a material by name: its lobe, reflectance and form of masking.
+    /// The BSDF of a material by name: its lobe, reflectance and form of masking, its haze, and the
+    /// share of its light that goes back. Ranges of shares are taken at their middle.
     ///
     /// compensation is "none", "turquin" or "kulla-conty".
     #[pyo3(signature = (name, compensation="none", *, stand_in=false))]

@@ -26,13 +26,14 @@ pub(crate) fn unbound(why: BindError) -> PyErr {
         ("`StandIn::Round`", "stand_in=True"),
         ("and the sigma and theta of its Skew", "and its sigma and theta"),
         (", which compensation needs", ""),
+        (", or state that a lobe or BSDF of your own is one by `is_symmetric`", ""),
         ("bake a set from these lines", "give microfacet.bake a recipe with these lines"),
     ];
     refused(words.iter().fold(why.to_string(), |why, (rust, python)| why.replace(rust, python)))
 }
 
 /// Names that other renderers have for arguments of ours, with what to write.
-const ELSEWHERE: [(&str, &str); 15] = [
+const ELSEWHERE: [(&str, &str); 18] = [
     ("alpha", "sigma is what others call alpha: sigma = alpha"),
     ("alpha_x", "sigma_x is what others call alpha_x: sigma_x = alpha_x"),
     ("alpha_y", "sigma_y is what others call alpha_y: sigma_y = alpha_y"),
@@ -48,6 +49,9 @@ const ELSEWHERE: [(&str, &str); 15] = [
     ("ior", "the index of refraction is eta; of a metal eta with k"),
     ("material", "give metal, a name such as \"gold\" or \"Au\""),
     ("edge_tint", "the tint at 82 degrees is f82"),
+    ("specular_haze", "the share of the haze is weight"),
+    ("specular_haze_spread", "the haze is a BSDF of its own, of a rougher lobe"),
+    ("specular_retroreflectivity", "the share of the light that goes back is share"),
 ];
 
 /// Raises TypeError for arguments that a class does not have, and says what to write instead.

@@ -15,10 +15,12 @@ __all__ = [
     "Dielectric",
     "DielectricAlbedo",
     "Ellipsoid",
+    "Haze",
     "Library",
     "Lobe",
     "Need",
     "Plastic",
+    "Retroreflective",
     "Shape",
     "StudentT",
     "Tables",
@@ -214,6 +216,24 @@ class Plastic(Bsdf):
     @property
     def leaving(self) -> float: ...
     def coat_shares(self, v: ArrayLike) -> _Array: ...
+
+@final
+class Haze(Bsdf):
+    def __new__(cls, core: Bsdf, haze: Bsdf, weight: ArrayLike) -> Haze: ...
+    @property
+    def core(self) -> Bsdf: ...
+    @property
+    def haze(self) -> Bsdf: ...
+    @property
+    def weight(self) -> _Number: ...
+
+@final
+class Retroreflective(Bsdf):
+    def __new__(cls, bsdf: Bsdf, share: ArrayLike) -> Retroreflective: ...
+    @property
+    def bsdf(self) -> Bsdf: ...
+    @property
+    def share(self) -> _Number: ...
 
 @final
 class Need:

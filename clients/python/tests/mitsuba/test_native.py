@@ -53,6 +53,18 @@ def test_conductor_of_ggx(roughness: Any) -> None:
     compare(ours, native, False, 1e-4)
 
 
+def test_a_blend_of_two_conductors_is_a_haze() -> None:
+    core, haze = (surfaces.conductor(sigma=sigma, gamma=2.0, f0=0.9) for sigma in (0.1, 0.5))
+    blend = mi.load_dict({"type": "blendbsdf", "weight": 0.3, "core": core, "haze": haze})
+    lobes = (microfacet.StudentT(sigma, 2.0) for sigma in (0.1, 0.5))
+    ours = microfacet.Haze(*(microfacet.Conductor(lobe, f0=0.9) for lobe in lobes), weight=0.3)
+    v, l = directions(20_000, 3, 0.02), directions(20_000, 4, 0.02)
+    value = numbers(blend.eval(CONTEXT, hit(v), vectors(l)))[:, 0]
+    assert np.allclose(value, ours.eval(v, l)[:, 0] * l[:, 2], rtol=1e-4)
+    pdf = numbers(blend.pdf(CONTEXT, hit(v), vectors(l)))
+    assert np.allclose(pdf, ours.pdf(v, l), rtol=1e-4)
+
+
 @pytest.mark.parametrize("roughness", ROUGHNESS)
 def test_dielectric_of_ggx(roughness: Any) -> None:
     ours = surfaces.dielectric(gamma=2, masking="uncorrelated", **roughness["ours"])
