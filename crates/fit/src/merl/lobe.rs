@@ -68,7 +68,8 @@ impl Lobe {
                 // Over this coordinate Λ is smooth, and a cubic through four nodes is enough.
                 let coarse: Vec<f64> = (0..=steps / COARSE)
                     .map(|i| {
-                        // The slope of the direction in units of σ; nothing is masked at the normal.
+                        // The slope of the direction in units of σ. At the normal nothing is
+                        // masked.
                         let x = 1.0 / (angle(COARSE * i).tan() * marginal.sigma());
                         if x.is_finite() { marginal.beyond(x).excess / x } else { 0.0 }
                     })
