@@ -4,6 +4,7 @@ use glam::DVec3;
 use microfacet_baker::distribution::{DistributionKind, Named};
 use microfacet_model::classic::{Abc, Isotropic, Marginal};
 use microfacet_model::{MicrofacetDistribution, StudentT};
+use microfacet_tables::axis::hermite::cubic_through_thirds;
 
 /// Nodes of a table of masking from one value by quadrature to the next.
 const COARSE: usize = 8;
@@ -83,10 +84,9 @@ impl Lobe {
 /// The cubic through the four values about a place, a place being the number of a value.
 fn cubic(values: &[f64], place: f64) -> f64 {
     let first = (place as usize).saturating_sub(1).min(values.len() - 4);
-    let t = place - first as f64;
-    let v = &values[first..first + 4];
-    let [a, b, c] = [t - 1.0, t - 2.0, t - 3.0];
-    (a * b * c * v[0] - 3.0 * t * b * c * v[1] + 3.0 * t * a * c * v[2] - t * a * b * v[3]) / -6.0
+    let [a, b, c, d] = cubic_through_thirds(core::array::from_fn(|i| values[first + i]));
+    let w = (place - first as f64) / 3.0;
+    a + w * (b + w * (c + w * d))
 }
 
 #[cfg(test)]

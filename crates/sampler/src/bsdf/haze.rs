@@ -2,7 +2,7 @@
 
 use microfacet_core::math::unit;
 
-use super::pair::Pair;
+use super::pair::{Pair, by_pair};
 use super::{Bsdf, BsdfSample, Transport};
 use crate::bind_error::BindError;
 
@@ -115,48 +115,4 @@ pub(super) fn share(name: &'static str, value: f32) -> Result<f32, BindError> {
     if (0.0..=1.0).contains(&value) { Ok(value) } else { Err(BindError::Share { name, value }) }
 }
 
-impl<const N: usize, A: Bsdf<N>, B: Bsdf<N>> Bsdf<N> for Haze<A, B> {
-    #[inline]
-    fn sample_with_pdf(
-        &self,
-        v: impl Into<[f32; 3]>,
-        choice: f32,
-        u: [f32; 2],
-        transport: Transport,
-    ) -> Option<(BsdfSample<N>, f32)> {
-        self.pair().sample_with_pdf(v.into(), choice, u, transport)
-    }
-
-    #[inline]
-    fn sample(
-        &self,
-        v: impl Into<[f32; 3]>,
-        choice: f32,
-        u: [f32; 2],
-        transport: Transport,
-    ) -> Option<BsdfSample<N>> {
-        self.pair().sample(v.into(), choice, u, transport)
-    }
-
-    #[inline]
-    fn eval_pdf(
-        &self,
-        v: impl Into<[f32; 3]>,
-        l: impl Into<[f32; 3]>,
-        transport: Transport,
-    ) -> ([f32; N], f32) {
-        self.pair().eval_pdf(v.into(), l.into(), transport)
-    }
-
-    fn is_delta(&self) -> bool {
-        self.pair().is_delta()
-    }
-
-    fn transmits(&self) -> bool {
-        self.pair().transmits()
-    }
-
-    fn is_symmetric(&self) -> bool {
-        self.pair().is_symmetric()
-    }
-}
+by_pair!(Haze<A, B>);

@@ -28,19 +28,22 @@ pub(super) struct Pair<'a, A, B> {
 }
 
 impl<A, B> Pair<'_, A, B> {
+    /// Whether something holds for the parts that are there.
+    fn all(&self, first: impl Fn(&A) -> bool, second: impl Fn(&B) -> bool) -> bool {
+        (self.w == 1.0 || first(self.first)) && (self.w == 0.0 || second(self.second))
+    }
+}
+
+impl<const N: usize, A: Bsdf<N>, B: Bsdf<N>> Bsdf<N> for Pair<'_, A, B> {
     #[inline]
-    pub(super) fn sample_with_pdf<const N: usize>(
+    fn sample_with_pdf(
         &self,
-        v: [f32; 3],
+        v: impl Into<[f32; 3]>,
         number: f32,
         u: [f32; 2],
         transport: Transport,
-    ) -> Option<(BsdfSample<N>, f32)>
-    where
-        A: Bsdf<N>,
-        B: Bsdf<N>,
-    {
-        let Self { first, second, w } = *self;
+    ) -> Option<(BsdfSample<N>, f32)> {
+        let (&Self { first, second, w }, v) = (self, v.into());
         if w == 0.0 {
             return first.sample_with_pdf(v, number, u, transport);
         }
@@ -58,17 +61,13 @@ impl<A, B> Pair<'_, A, B> {
     }
 
     #[inline]
-    pub(super) fn sample<const N: usize>(
+    fn sample(
         &self,
-        v: [f32; 3],
+        v: impl Into<[f32; 3]>,
         number: f32,
         u: [f32; 2],
         transport: Transport,
-    ) -> Option<BsdfSample<N>>
-    where
-        A: Bsdf<N>,
-        B: Bsdf<N>,
-    {
+    ) -> Option<BsdfSample<N>> {
         // A single part needs no density for its weight.
         if self.w == 0.0 {
             return self.first.sample(v, number, u, transport);
@@ -80,17 +79,13 @@ impl<A, B> Pair<'_, A, B> {
     }
 
     #[inline]
-    pub(super) fn eval_pdf<const N: usize>(
+    fn eval_pdf(
         &self,
-        v: [f32; 3],
-        l: [f32; 3],
+        v: impl Into<[f32; 3]>,
+        l: impl Into<[f32; 3]>,
         transport: Transport,
-    ) -> ([f32; N], f32)
-    where
-        A: Bsdf<N>,
-        B: Bsdf<N>,
-    {
-        let Self { first, second, w } = *self;
+    ) -> ([f32; N], f32) {
+        let (&Self { first, second, w }, v, l) = (self, v.into(), l.into());
         if w == 0.0 {
             return first.eval_pdf(v, l, transport);
         }
@@ -104,35 +99,70 @@ impl<A, B> Pair<'_, A, B> {
         (core::array::from_fn(|i| mean(f[i], g[i])), mean(p, q))
     }
 
-    pub(super) fn is_delta<const N: usize>(&self) -> bool
-    where
-        A: Bsdf<N>,
-        B: Bsdf<N>,
-    {
+    fn is_delta(&self) -> bool {
         self.all(A::is_delta, B::is_delta)
     }
 
-    pub(super) fn transmits<const N: usize>(&self) -> bool
-    where
-        A: Bsdf<N>,
-        B: Bsdf<N>,
-    {
+    fn transmits(&self) -> bool {
         !self.all(|first| !first.transmits(), |second| !second.transmits())
     }
 
-    pub(super) fn is_symmetric<const N: usize>(&self) -> bool
-    where
-        A: Bsdf<N>,
-        B: Bsdf<N>,
-    {
+    fn is_symmetric(&self) -> bool {
         self.all(A::is_symmetric, B::is_symmetric)
     }
-
-    /// Whether something holds for the parts that are there.
-    fn all(&self, first: impl Fn(&A) -> bool, second: impl Fn(&B) -> bool) -> bool {
-        (self.w == 1.0 || first(self.first)) && (self.w == 0.0 || second(self.second))
-    }
 }
+
+/// The BSDF of a type that is a [`Pair`], which its function `pair` returns.
+macro_rules! by_pair {
+    ($type:ident<$($part:ident),+>) => {
+        impl<const N: usize, $($part: Bsdf<N>),+> Bsdf<N> for $type<$($part),+> {
+            #[inline]
+            fn sample_with_pdf(
+                &self,
+                v: impl Into<[f32; 3]>,
+                choice: f32,
+                u: [f32; 2],
+                transport: Transport,
+            ) -> Option<(BsdfSample<N>, f32)> {
+                self.pair().sample_with_pdf(v, choice, u, transport)
+            }
+
+            #[inline]
+            fn sample(
+                &self,
+                v: impl Into<[f32; 3]>,
+                choice: f32,
+                u: [f32; 2],
+                transport: Transport,
+            ) -> Option<BsdfSample<N>> {
+                self.pair().sample(v, choice, u, transport)
+            }
+
+            #[inline]
+            fn eval_pdf(
+                &self,
+                v: impl Into<[f32; 3]>,
+                l: impl Into<[f32; 3]>,
+                transport: Transport,
+            ) -> ([f32; N], f32) {
+                self.pair().eval_pdf(v, l, transport)
+            }
+
+            fn is_delta(&self) -> bool {
+                Bsdf::<N>::is_delta(&self.pair())
+            }
+
+            fn transmits(&self) -> bool {
+                Bsdf::<N>::transmits(&self.pair())
+            }
+
+            fn is_symmetric(&self) -> bool {
+                Bsdf::<N>::is_symmetric(&self.pair())
+            }
+        }
+    };
+}
+pub(super) use by_pair;
 
 /// What a part of a `share` has drawn, as a sample of the pair.
 #[inline(always)]

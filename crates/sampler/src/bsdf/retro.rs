@@ -3,7 +3,7 @@
 use microfacet_core::math::unit;
 
 use super::haze::share;
-use super::pair::Pair;
+use super::pair::{Pair, by_pair};
 use super::{Bsdf, BsdfSample, Transport};
 use crate::bind_error::BindError;
 
@@ -41,7 +41,7 @@ use crate::bind_error::BindError;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Retroreflective<B> {
-    bsdf: B,
+    turned: Turned<B>,
     share: f32,
 }
 
@@ -58,7 +58,7 @@ impl<B> Retroreflective<B> {
     {
         let share = self::share("share", share)?;
         match turns(&bsdf) {
-            true => Ok(Self { bsdf, share }),
+            true => Ok(Self { turned: Turned(bsdf), share }),
             false => Err(BindError::NoRetroreflection { transmits: bsdf.transmits() }),
         }
     }
@@ -72,13 +72,13 @@ impl<B> Retroreflective<B> {
         B: Bsdf<N>,
     {
         let share = if turns(&bsdf) { unit(share) } else { 0.0 };
-        Self { bsdf, share }
+        Self { turned: Turned(bsdf), share }
     }
 
     /// The BSDF.
     #[must_use]
     pub fn bsdf(&self) -> &B {
-        &self.bsdf
+        &self.turned.0
     }
 
     /// The share of the light that goes back, in [0, 1].
@@ -89,7 +89,12 @@ impl<B> Retroreflective<B> {
 
     /// The same of a BSDF in another form.
     pub(super) fn map<C>(self, bsdf: fn(B) -> C) -> Retroreflective<C> {
-        Retroreflective { bsdf: bsdf(self.bsdf), share: self.share }
+        Retroreflective { turned: Turned(bsdf(self.turned.0)), share: self.share }
+    }
+
+    #[inline(always)]
+    fn pair(&self) -> Pair<'_, B, Turned<B>> {
+        Pair { first: &self.turned.0, second: &self.turned, w: self.share }
     }
 }
 
@@ -100,7 +105,8 @@ fn turns<const N: usize>(bsdf: &impl Bsdf<N>) -> bool {
 }
 
 /// A BSDF for the view after a half turn about n.
-struct Turned<'a, B>(&'a B);
+#[derive(Clone, Debug)]
+struct Turned<B>(B);
 
 #[inline(always)]
 fn turned(v: impl Into<[f32; 3]>) -> [f32; 3] {
@@ -108,7 +114,7 @@ fn turned(v: impl Into<[f32; 3]>) -> [f32; 3] {
     [-x, -y, z]
 }
 
-impl<const N: usize, B: Bsdf<N>> Bsdf<N> for Turned<'_, B> {
+impl<const N: usize, B: Bsdf<N>> Bsdf<N> for Turned<B> {
     #[inline]
     fn sample_with_pdf(
         &self,
@@ -154,65 +160,4 @@ impl<const N: usize, B: Bsdf<N>> Bsdf<N> for Turned<'_, B> {
     }
 }
 
-impl<const N: usize, B: Bsdf<N>> Bsdf<N> for Retroreflective<B> {
-    #[inline]
-    fn sample_with_pdf(
-        &self,
-        v: impl Into<[f32; 3]>,
-        choice: f32,
-        u: [f32; 2],
-        transport: Transport,
-    ) -> Option<(BsdfSample<N>, f32)> {
-        let Self { bsdf, share } = self;
-        Pair { first: bsdf, second: &Turned(bsdf), w: *share }.sample_with_pdf(
-            v.into(),
-            choice,
-            u,
-            transport,
-        )
-    }
-
-    #[inline]
-    fn sample(
-        &self,
-        v: impl Into<[f32; 3]>,
-        choice: f32,
-        u: [f32; 2],
-        transport: Transport,
-    ) -> Option<BsdfSample<N>> {
-        let Self { bsdf, share } = self;
-        Pair { first: bsdf, second: &Turned(bsdf), w: *share }.sample(
-            v.into(),
-            choice,
-            u,
-            transport,
-        )
-    }
-
-    #[inline]
-    fn eval_pdf(
-        &self,
-        v: impl Into<[f32; 3]>,
-        l: impl Into<[f32; 3]>,
-        transport: Transport,
-    ) -> ([f32; N], f32) {
-        let Self { bsdf, share } = self;
-        Pair { first: bsdf, second: &Turned(bsdf), w: *share }.eval_pdf(
-            v.into(),
-            l.into(),
-            transport,
-        )
-    }
-
-    fn is_delta(&self) -> bool {
-        self.bsdf.is_delta()
-    }
-
-    fn transmits(&self) -> bool {
-        self.bsdf.transmits()
-    }
-
-    fn is_symmetric(&self) -> bool {
-        self.bsdf.is_symmetric()
-    }
-}
+by_pair!(Retroreflective<B>);
