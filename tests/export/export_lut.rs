@@ -11,7 +11,7 @@ use microfacet_baker::progress::Stage;
 use microfacet_export::texture::engine::{LAYOUTS, Layout};
 use microfacet_export::texture::{
     Channels, Checks, Deviation, Format, Made, Place, Shapes, Texture, TextureSpec, check, files,
-    known, place,
+    known,
 };
 use microfacet_model::{AlbedoIntegrator, Shape};
 use microfacet_sampler::Masking;
@@ -74,7 +74,7 @@ fn a_volume_errs_by_what_it_states() {
         let place = |j: i32, view: bool| {
             let [a, b] = [0.618_034, 0.414_214].map(|step| (f64::from(j) * step).fract());
             let cos = view.then_some(1e-4_f64.powf(a));
-            Place { gamma, sigma: (3.0 * b * b).max(1e-8), cos }
+            Place { gamma, sigma: (3.0 * b * b).max(1e-8), eta: None, cos }
         };
         for (spec, texture, stated, count) in &made {
             let view = spec.is_directional();
@@ -100,11 +100,11 @@ fn a_texture_errs_by_what_it_states() {
             let mut places = Vec::new();
             for rough in (0..=steps).map(along) {
                 if !spec.is_directional() {
-                    places.push(place(&spec.axes, gamma, &[rough]));
+                    places.push(spec.place(&[rough]));
                     continue;
                 }
                 for view in (0..=steps).map(along) {
-                    let place = place(&spec.axes, gamma, &[rough, view]);
+                    let place = spec.place(&[rough, view]);
                     let cos = place.cos.map(|cos| cos.max(1e-4));
                     // The smallest cosine runs through all coordinates of the view below 1e-2.
                     let horizon = Place { sigma: 1e-6_f64.powf(rough) * 1e-2, cos, ..place };
@@ -379,7 +379,7 @@ fn a_clamp_at_the_last_middle_shows_at_full_roughness() {
         let layout = Layout::find(name).unwrap();
         let spec = &layout.specs(2.0, layout.size, false)[0];
         let cos = |i: i32| Some(0.05 + 0.95 * f64::from(i) / 99.0);
-        let at = |i| Place { gamma: 2.0, sigma: root * root, cos: cos(i) };
+        let at = |i| Place { gamma: 2.0, sigma: root * root, eta: None, cos: cos(i) };
         let places: Vec<Place> = (0..100).map(at).collect();
         let known = known(&places, spec.masking, &Stage::unwatched()).unwrap();
         let found = Checks::at(spec, &known).of(&made(spec), |_| true);

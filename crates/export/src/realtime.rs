@@ -14,9 +14,7 @@ use microfacet_tables::crc32;
 use serde::Serialize;
 
 use crate::ExportFile;
-use crate::texture::{
-    Channel, Channels, Place, Shapes, TexelAxis, TextureSpec, Truth, encode_texels, place,
-};
+use crate::texture::{Channel, Channels, Place, Shapes, TextureSpec, Truth, encode_texels};
 
 /// The least γ. Heavier tails lose most of their light to facets near the horizon, which these
 /// textures do not resolve.
@@ -74,7 +72,7 @@ impl Realtime {
         let provenance = tables.provenance();
         Ok(Self {
             masking: masking().expect("shapes of the family"),
-            albedo: with_averages(&spec.axes, &texels),
+            albedo: with_averages(&spec, &texels),
             generator: provenance.generator.clone(),
             numerics: provenance.numerics,
         })
@@ -192,12 +190,12 @@ pub(crate) fn spec() -> TextureSpec {
 
 /// Texels of three channels, with a fourth: √(1 − E_avg). It is the average of what a filter reads,
 /// so that a white furnace closes: further bounces return what the first lost.
-fn with_averages(axes: &[TexelAxis], texels: &[Vec<f32>]) -> Vec<[f16; 4]> {
+fn with_averages(spec: &TextureSpec, texels: &[Vec<f32>]) -> Vec<[f16; 4]> {
     let [_, sigmas, views] = ALBEDO;
     let of_row = |(row, texels): (usize, &[Vec<f32>])| {
-        let material = [axes[0].texels[row / sigmas], axes[1].texels[row % sigmas]];
+        let material = [spec.axes[0].texels[row / sigmas], spec.axes[1].texels[row % sigmas]];
         let lost: Vec<f64> = texels.iter().map(|x| f16::from_f32(x[0]).to_f64()).collect();
-        let average = average(axes, material, &lost).sqrt() as f32;
+        let average = average(spec, material, &lost).sqrt() as f32;
         let texel = |x: &Vec<f32>| [x[0], x[1], x[2], average].map(f16::from_f32);
         texels.iter().map(texel).collect::<Vec<_>>()
     };
@@ -206,9 +204,9 @@ fn with_averages(axes: &[TexelAxis], texels: &[Vec<f32>]) -> Vec<[f16; 4]> {
 
 /// The average of 1 − E over μ², which is what a filter reads along the views, by steps in each of
 /// their cells.
-fn average(axes: &[TexelAxis], [gamma, sigma]: [f64; 2], along: &[f64]) -> f64 {
+fn average(spec: &TextureSpec, [gamma, sigma]: [f64; 2], along: &[f64]) -> f64 {
     const STEPS: usize = 32;
-    let square = |t| place(axes, f64::NAN, &[gamma, sigma, t]).cos.expect("a view").powi(2);
+    let square = |t| spec.place(&[gamma, sigma, t]).cos.expect("a view").powi(2);
     let count = STEPS * (along.len() - 1);
     let (mut lost, mut before) = (0.0, 0.0);
     for step in 0..count {
@@ -243,13 +241,13 @@ mod tests {
             let line = |i| (1.0 - q) * of(i, j) + q * of(i, j + 1);
             (1.0 - p) * line(i) + p * line(i + 1)
         };
-        let axes = spec().axes;
+        let spec = spec();
         let last = |axis: usize| (ALBEDO[axis] - 1) as f64;
         let mut worst = [0.0_f64; 3];
         for shape in [0.0, 0.5, 7.3, 15.5, 24.5, 30.5, 31.0] {
             for sigma in [0.1, 0.5, 1.0, 1.5, 3.5, 6.5, 12.3, 20.5, 26.5, 30.5, 31.0] {
                 let along: Vec<f64> = (0..views).map(|c| row([shape, sigma], c, 0)).collect();
-                let exact = average(&axes, [shape / last(0), sigma / last(1)], &along);
+                let exact = average(&spec, [shape / last(0), sigma / last(1)], &along);
                 let stored = row([shape, sigma], 0, 3).powi(2);
                 let most = along.iter().map(|root| root * root).fold(0.0, f64::max);
                 let error = most * (exact / stored - 1.0).abs();

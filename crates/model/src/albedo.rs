@@ -153,7 +153,7 @@ impl AlbedoIntegrator {
     }
 
     /// [`reflection`](Self::reflection) to a tolerance no smaller than that of the integrator.
-    fn reflection_to<const N: usize>(
+    pub(crate) fn reflection_to<const N: usize>(
         &self,
         tolerance: f64,
         sigma: f64,
@@ -197,11 +197,24 @@ impl AlbedoIntegrator {
         kink: f64,
         weight: impl Fn(f64) -> [f64; N],
     ) -> Result<Albedo<N>, ParameterError> {
+        self.reflection_with_kink_to(self.tolerance, sigma, cos_theta, kink, weight)
+    }
+
+    /// [`reflection_with_kink`](Self::reflection_with_kink) to a tolerance no smaller than that of
+    /// the integrator.
+    pub(crate) fn reflection_with_kink_to<const N: usize>(
+        &self,
+        tolerance: f64,
+        sigma: f64,
+        cos_theta: f64,
+        kink: f64,
+        weight: impl Fn(f64) -> [f64; N],
+    ) -> Result<Albedo<N>, ParameterError> {
         if sigma == 0.0 {
-            return self.reflection(sigma, cos_theta, weight);
+            return self.reflection_to(tolerance, sigma, cos_theta, weight);
         }
         let view = View { kink, ..self.view([sigma, sigma], cos_theta, 0.0)? };
-        Ok(self.converged(self.tolerance, &view, weight))
+        Ok(self.converged(tolerance, &view, weight))
     }
 
     /// The albedos of one view at the first order that is accurate enough, or else the last.

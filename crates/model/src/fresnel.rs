@@ -60,6 +60,11 @@ impl Dielectric {
         self.eta
     }
 
+    /// The cosine at which total reflection begins, √(1 − η²); 0 if η ≥ 1, where it never does.
+    pub fn kink(&self) -> f64 {
+        ((1.0 - self.eta) * (1.0 + self.eta)).max(0.0).sqrt()
+    }
+
     /// The same interface seen from its other side, index 1/η.
     pub fn reversed(&self) -> Self {
         Self { eta: 1.0 / self.eta }

@@ -61,6 +61,7 @@ mod distribution;
 mod ellipsoid;
 mod error;
 pub mod fresnel;
+mod interface;
 mod lune;
 mod ndf;
 mod panels;

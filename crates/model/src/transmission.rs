@@ -50,16 +50,26 @@ impl AlbedoIntegrator {
         cos_theta: f64,
         dielectric: Dielectric,
     ) -> Result<Albedo<1>, ParameterError> {
+        self.transmission_to(self.tolerance, sigma, cos_theta, dielectric)
+    }
+
+    /// [`transmission`](Self::transmission) to a tolerance no smaller than that of the integrator.
+    pub(crate) fn transmission_to(
+        &self,
+        tolerance: f64,
+        sigma: f64,
+        cos_theta: f64,
+        dielectric: Dielectric,
+    ) -> Result<Albedo<1>, ParameterError> {
         check_cosine(cos_theta)?;
         if sigma == 0.0 {
             return Ok(Albedo::new([[1.0 - dielectric.reflectance(cos_theta)]; 2], 0.0));
         }
-        let eta = dielectric.eta();
-        let kink = if eta < 1.0 { ((1.0 - eta) * (1.0 + eta)).sqrt() } else { 0.0 };
+        let kink = dielectric.kink();
         let mut view = self.view([sigma, sigma], cos_theta, 0.0)?;
         view.kink = kink;
         let pane = Pane { model: self, dielectric, sigma, view };
-        Ok(self.refined(self.tolerance, kink > 0.0, |rule| {
+        Ok(self.refined(tolerance, kink > 0.0, |rule| {
             // The integrand is even in φ: half a turn counts twice.
             view.over_sectors(rule, pane.sectors(), 2.0, |phi| pane.ray(rule, phi).map(|x| [x]))
         }))

@@ -19,8 +19,18 @@ pub struct Place {
     pub gamma: f64,
     /// Roughness σ.
     pub sigma: f64,
+    /// The index of refraction beyond the interface over that on the side of the view, less than 1
+    /// seen from inside; none where all light is reflected, F = 1.
+    pub eta: Option<f64>,
     /// cos θ of the view; none for an average over all views.
     pub cos: Option<f64>,
+}
+
+impl Place {
+    /// A place of which nothing but γ is known, and that all light is reflected.
+    pub fn of_shape(gamma: f64) -> Self {
+        Self { gamma, sigma: f64::NAN, eta: None, cos: None }
+    }
 }
 
 /// The quantity along an axis, as a coordinate in [0, 1].
@@ -158,9 +168,9 @@ impl TexelAxis {
     }
 }
 
-/// The place at one coordinate along each axis; without an axis of shapes γ is `gamma`.
-pub fn place(axes: &[TexelAxis], gamma: f64, at: &[f64]) -> Place {
-    let mut place = Place { gamma, sigma: f64::NAN, cos: None };
+/// The place at one coordinate along each axis; what no axis sets is as in `fixed`.
+pub fn place(axes: &[TexelAxis], fixed: Place, at: &[f64]) -> Place {
+    let mut place = fixed;
     // Views last, since their coordinate depends on the material; axes may come in any order.
     for views in [false, true] {
         for (axis, &c) in axes.iter().zip(at) {
@@ -195,9 +205,12 @@ mod tests {
             Along::view(3.0, 0.5),
         ];
         let axes = along.map(|along| TexelAxis::to_ends(along, 8));
-        let of = |at: [f64; 3]| place(&axes, f64::NAN, &at);
-        assert_eq!(of([0.0, 1.0, 1.0]), Place { gamma: f64::INFINITY, sigma: 3.0, cos: Some(1.0) });
-        assert_eq!(of([1.0, 0.0, 0.0]), Place { gamma: 1.6, sigma: MIRROR, cos: Some(0.0) });
+        let nothing = Place::of_shape(f64::NAN);
+        let of = |at: [f64; 3]| place(&axes, nothing, &at);
+        let beckmann = Place { gamma: f64::INFINITY, sigma: 3.0, cos: Some(1.0), ..nothing };
+        assert_eq!(of([0.0, 1.0, 1.0]), beckmann);
+        let mirror = Place { gamma: 1.6, sigma: MIRROR, cos: Some(0.0), ..nothing };
+        assert_eq!(of([1.0, 0.0, 0.0]), mirror);
         for at in [[0.3, 0.5, 0.7], [1.0, 1e-6, 0.01], [0.0, 1.0, 0.999]] {
             let found = of(at);
             let cos = found.cos.unwrap();

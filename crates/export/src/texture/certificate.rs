@@ -5,7 +5,7 @@ use microfacet_baker::progress::Stage;
 use microfacet_core::Masking;
 use microfacet_model::ParameterError;
 
-use super::axis::{AXES, Place, TexelAxis, array, coordinates, place};
+use super::axis::{AXES, Place, TexelAxis, array, coordinates};
 use super::fit::{Filter, Tap};
 use super::truth::{Channel, FINEST, Truth, truths};
 use super::{Texture, TextureSpec};
@@ -27,7 +27,7 @@ const EVEN: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
 /// The error of a quantity over the points that count.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
-    /// `e`, `scale` or `bias`.
+    /// `e`, `scale`, `bias`, `reflected` or `transmitted`.
     pub quantity: &'static str,
     /// The largest error.
     pub largest: f64,
@@ -113,7 +113,7 @@ impl Checks {
         let shapes = axes.iter().find(|axis| axis.is_of_shapes());
         let slices = shapes.map_or(vec![f64::NAN], slices);
         let share = count / slices.len();
-        let of = |at: [f64; AXES]| match place(axes, spec.gamma, &at) {
+        let of = |at: [f64; AXES]| match spec.place(&at) {
             place if spec.promises(&place) => (place, filter.tap(axes, &at)),
             below => {
                 let place = Place { cos: Some(spec.least_cos), ..below };
@@ -195,6 +195,9 @@ fn quantities(channels: &[Channel]) -> Vec<(&'static str, Reading)> {
             Channel::Empty | Channel::Excess | Channel::TintExcess | Channel::RootLost => {}
             // The error of 1 − E is that of E.
             Channel::Lost => all.push(("e", Box::new(move |read, t| (1.0 - read(i), t.e)))),
+            Channel::NotReflected => {
+                all.push(("reflected", Box::new(move |read, t| (1.0 - read(i), t.shares[0]))));
+            }
             _ => all.push((channel.name(), Box::new(move |read, t| (read(i), channel.of(t))))),
         }
     }
@@ -206,6 +209,10 @@ fn quantities(channels: &[Channel]) -> Vec<(&'static str, Reading)> {
             move |read: &dyn Fn(usize) -> f64, t: Truth| read(excess) + read(e) * t.mirror[0];
         all.push(("bias", Box::new(move |read, t| (bias(read, t), t.bias))));
         all.push(("scale", Box::new(move |read, t| (read(e) - bias(read, t), t.e - t.bias))));
+    }
+    let [reflected, transmitted] = [Channel::Reflected, Channel::Transmitted].map(find);
+    if let (Some(r), Some(t)) = (reflected, transmitted) {
+        all.push(("e", Box::new(move |read, truth| (read(r) + read(t), truth.e))));
     }
     // Engines read E as the sum of both.
     if let (Some(scale), Some(bias), None) = (scale, bias, e) {

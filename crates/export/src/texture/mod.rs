@@ -100,6 +100,8 @@ pub struct TextureSpec {
     pub name: String,
     /// γ, where no axis is of shapes.
     pub gamma: f64,
+    /// The index of a dielectric, where no axis is of indices, as [`Place::eta`].
+    pub eta: Option<f64>,
     /// The axes, slowest first. Without an axis of views the texture is of averages.
     pub axes: Vec<TexelAxis>,
     /// The form of masking.
@@ -149,6 +151,7 @@ impl TextureSpec {
         let directional = Self {
             name: name.into(),
             gamma,
+            eta: None,
             masking,
             channels: channels.all(),
             least_cos: LEAST_COS,
@@ -163,6 +166,16 @@ impl TextureSpec {
     pub fn average(&self, name: &str) -> Self {
         let axes = self.axes.iter().filter(|axis| !axis.along.is_view()).cloned().collect();
         Self { name: name.into(), axes, ..self.clone() }
+    }
+
+    /// The place at one coordinate along each axis.
+    pub fn place(&self, at: &[f64]) -> Place {
+        place(&self.axes, self.fixed(), at)
+    }
+
+    /// What no axis may set, as it is given.
+    fn fixed(&self) -> Place {
+        Place { eta: self.eta, ..Place::of_shape(self.gamma) }
     }
 
     /// Whether it has an axis of views; else it is of averages.
@@ -269,10 +282,10 @@ impl TextureSpec {
 
     fn at_texels(&self, stage: &Stage) -> Result<Texture, ParameterError> {
         let texels = self.grid(|axis| axis.texels.clone());
-        let at = |i| place(&self.axes, self.gamma, &texels.at(i));
+        let at = |i| self.place(&texels.at(i));
         let shapes = self.axes.iter().zip(&texels.0).find(|(axis, _)| axis.is_of_shapes());
         let gammas: Vec<f64> = shapes.map_or(vec![self.gamma], |(axis, coordinates)| {
-            let of = |&c: &f64| place(from_ref(axis), self.gamma, &[c]).gamma;
+            let of = |&c: &f64| place(from_ref(axis), self.fixed(), &[c]).gamma;
             coordinates.iter().map(of).collect()
         });
         let truths = self.truths(gammas.into_iter(), texels.len(), at, stage)?;
@@ -290,7 +303,7 @@ impl TextureSpec {
     pub(crate) fn exact(&self, truth: impl Fn(&Place) -> Truth + Sync) -> Vec<Vec<f32>> {
         let texels = self.grid(|axis| axis.texels.clone());
         let of = |i| {
-            let truth = truth(&place(&self.axes, self.gamma, &texels.at(i)));
+            let truth = truth(&self.place(&texels.at(i)));
             self.channels.iter().map(|channel| channel.of(truth) as f32).collect()
         };
         (0..texels.len()).into_par_iter().map(of).collect()
@@ -308,7 +321,7 @@ impl TextureSpec {
         let grid = self.grid(dense);
         let of = |i| {
             let at = grid.at(i);
-            (place(&self.axes, self.gamma, &at), filter.tap(&self.axes, &at))
+            (self.place(&at), filter.tap(&self.axes, &at))
         };
         let mut points: Vec<_> = (0..grid.len()).into_par_iter().map(of).collect();
         if self.is_directional() {
@@ -330,7 +343,7 @@ impl TextureSpec {
                 along if along.is_view() => 0.0,
                 _ => rough,
             }));
-            let place = place(&self.axes, self.gamma, &at);
+            let place = self.place(&at);
             let place = Place { cos: Some(self.least_cos), ..place };
             (rough, place, coordinates(&self.axes, &place))
         };

@@ -6,6 +6,7 @@ use microfacet_baker::bake::albedo::weights;
 use microfacet_baker::progress::Stage;
 use microfacet_core::Masking;
 use microfacet_core::schlick::{F82_AVERAGE, SCHLICK_AVERAGE, f82_weight, schlick_weight};
+use microfacet_model::fresnel::Dielectric;
 use microfacet_model::{AlbedoIntegrator, ParameterError, Shape};
 use rayon::prelude::*;
 
@@ -20,7 +21,7 @@ pub(super) const COARSEST: [f64; 2] = [3e-5, 1e-4];
 /// What a channel of a texture holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Channel {
-    /// E, the albedo under F = 1.
+    /// E, the albedo under F = 1; of an interface, the sum of both shares.
     E,
     /// 1 − E.
     Lost,
@@ -34,6 +35,14 @@ pub enum Channel {
     Excess,
     /// The moment of F82, less E times that of a mirror.
     TintExcess,
+    /// The share of light that an interface reflects.
+    Reflected,
+    /// The share of light that an interface transmits.
+    Transmitted,
+    /// One minus the share that is reflected.
+    NotReflected,
+    /// Reflected light as a share of all that leaves the interface.
+    PartReflected,
     /// A channel of an engine that is no albedo of this family: 0.
     Empty,
 }
@@ -49,6 +58,10 @@ impl Channel {
             Self::Bias => "bias",
             Self::Excess => "bias_excess",
             Self::TintExcess => "f82_excess",
+            Self::Reflected => "reflected",
+            Self::Transmitted => "transmitted",
+            Self::NotReflected => "one_minus_reflected",
+            Self::PartReflected => "reflected_part",
             Self::Empty => "empty",
         }
     }
@@ -70,6 +83,10 @@ impl Channel {
             Self::Bias => truth.bias,
             Self::Excess => truth.bias - truth.e * truth.mirror[0],
             Self::TintExcess => truth.tint - truth.e * truth.mirror[1],
+            Self::Reflected => truth.shares[0],
+            Self::Transmitted => truth.shares[1],
+            Self::NotReflected => 1.0 - truth.shares[0],
+            Self::PartReflected => truth.shares[0] / truth.e,
             Self::Empty => 0.0,
         }
     }
@@ -78,11 +95,13 @@ impl Channel {
 /// The albedo of a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Truth {
-    /// E.
+    /// E; of an interface, the sum of both shares.
     pub e: f64,
-    /// The component of E with the factor F90.
+    /// The shares reflected and transmitted, all and nothing of E if F = 1.
+    pub shares: [f64; 2],
+    /// The component of E with the factor F90; NaN of an interface.
     pub bias: f64,
-    /// The moment of OpenPBR's tint at 82°, over its peak.
+    /// The moment of OpenPBR's tint at 82°, over its peak; NaN of an interface.
     pub tint: f64,
     /// The bias and the moment of the tint of a mirror, (1−μ)⁵ and 7⁷/6⁶ μ(1−μ)⁶, or averages.
     pub mirror: [f64; 2],
@@ -92,7 +111,13 @@ impl Truth {
     /// E, its bias and the moment of the tint, at a view, or their averages.
     pub(crate) fn new(cos: Option<f64>, [e, bias, tint]: [f64; 3]) -> Self {
         let of_view = |cos| [schlick_weight(cos), f82_weight(cos)];
-        Self { e, bias, tint, mirror: cos.map_or([SCHLICK_AVERAGE, F82_AVERAGE], of_view) }
+        let mirror = cos.map_or([SCHLICK_AVERAGE, F82_AVERAGE], of_view);
+        Self { e, shares: [e, 0.0], bias, tint, mirror }
+    }
+
+    /// The shares reflected and transmitted by an interface.
+    fn of_interface(cos: Option<f64>, shares: [f64; 2]) -> Self {
+        Self { shares, ..Self::new(cos, [shares.iter().sum(), f64::NAN, f64::NAN]) }
     }
 }
 
@@ -117,13 +142,26 @@ pub(super) fn truths(
     let of = |i: usize| {
         let place = place(i);
         let integrator = &integrators[&place.gamma.to_bits()];
-        let albedo = match place.cos {
-            Some(cos) => integrator.reflection(place.sigma, cos, weights)?,
-            None => integrator.average(place.sigma, weights)?,
+        let truth = match place.eta {
+            None => {
+                let albedo = match place.cos {
+                    Some(cos) => integrator.reflection(place.sigma, cos, weights)?,
+                    None => integrator.average(place.sigma, weights)?,
+                };
+                let [scale, bias, tint] = albedo.of(masking);
+                Truth::new(place.cos, [scale + bias, bias, tint])
+            }
+            Some(eta) => {
+                let interface = Dielectric::new(eta)?;
+                let shares = match place.cos {
+                    Some(cos) => integrator.interface(place.sigma, cos, interface)?,
+                    None => integrator.interface_average(place.sigma, interface)?,
+                };
+                Truth::of_interface(place.cos, shares.of(masking))
+            }
         };
         stage.step();
-        let [scale, bias, tint] = albedo.of(masking);
-        Ok(Truth::new(place.cos, [scale + bias, bias, tint]))
+        Ok(truth)
     };
     (0..count).into_par_iter().map(of).collect()
 }
@@ -140,7 +178,8 @@ mod tests {
         let between = [(1.7305, 0.0327), (f64::INFINITY, 0.0126), (2.0, 0.3)];
         let materials = [&smooth[..], &between, &rough].concat();
         let worst = |tolerance: f64, finest: f64, cos: Option<f64>| {
-            let place = |i: usize| Place { gamma: materials[i].0, sigma: materials[i].1, cos };
+            let at = |(gamma, sigma)| Place { gamma, sigma, eta: None, cos };
+            let place = |i: usize| at(materials[i]);
             let of = |tolerance| {
                 let gammas = materials.iter().map(|&(gamma, _)| gamma);
                 let (masking, stage) = (Masking::HeightCorrelated, Stage::unwatched());

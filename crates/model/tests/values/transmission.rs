@@ -94,6 +94,29 @@ fn as_much_passes_either_way() {
     }
 }
 
+/// From inside, transmission's average is that from outside, and reflection's has a kink; the
+/// midpoint rule knows nothing of either.
+#[test]
+fn averages_of_both_shares_are_those_over_all_views() {
+    for gamma in [1.6, f64::INFINITY] {
+        let integrator = AlbedoIntegrator::new(Shape::new(gamma).unwrap(), 1e-6);
+        for (sigma, eta) in [(0.2, 1.5), (0.2, 1.0 / 1.5), (1.0, 1.0 / 3.0), (0.01, 1.0)] {
+            let pane = Dielectric::new(eta).unwrap();
+            let found = integrator.interface_average(sigma, pane).unwrap();
+            for share in [0, 1] {
+                let want = average(|cos| {
+                    let shares = integrator.interface(sigma, cos, pane).unwrap();
+                    Masking::ALL.map(|masking| shares.of(masking)[share])
+                });
+                for (masking, want) in Masking::ALL.into_iter().zip(want) {
+                    let at = format!("gamma {gamma}, sigma {sigma}, eta {eta}, share {share}");
+                    assert_near(found.of(masking)[share], want, 3e-5, at);
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn without_a_difference_all_that_is_not_shadowed_passes() {
     let pane = Dielectric::new(1.0).unwrap();
@@ -151,6 +174,8 @@ fn refuses_what_is_no_view() {
     for (sigma, cos) in [(-1.0, 0.5), (f64::NAN, 0.5), (0.3, -0.1), (0.3, 1.1), (0.3, f64::NAN)] {
         assert!(integrator.transmission(sigma, cos, pane).is_err(), "{sigma} {cos}");
     }
+    let smooth = integrator.interface(0.0, 0.4, pane).unwrap();
+    assert_eq!(smooth.uncorrelated, [pane.reflectance(0.4), 1.0 - pane.reflectance(0.4)]);
     let smooth = integrator.transmission(0.0, 0.4, pane).unwrap();
     assert_eq!(smooth.uncorrelated[0], 1.0 - pane.reflectance(0.4));
 }

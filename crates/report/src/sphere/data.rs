@@ -9,7 +9,7 @@ use flate2::write::DeflateEncoder;
 use glam::Vec3;
 use half::f16;
 use microfacet_core::Masking;
-use microfacet_export::texture::{Along, TexelAxis, place, shader_coordinates};
+use microfacet_export::texture::{Along, Place, TexelAxis, place, shader_coordinates};
 use microfacet_export::{Shape, WIDTH, append_some};
 use microfacet_sampler::{ConductorFresnel, MaterialError, Metal, StudentT, Tables};
 use microfacet_tables::{MaterialEntry, Reflectance};
@@ -143,10 +143,10 @@ fn albedos(tables: &Tables, gamma: f64) -> Result<(Vec<f16>, Vec<f32>), Material
     let mut lost = Vec::with_capacity(TEXELS.iter().product());
     for &s in &axes[0].texels {
         // One σ a row: binding an albedo takes as long as hundreds of lookups.
-        let sigma = place(&axes, gamma, &[s, 0.0]).sigma.max(StudentT::SIGMAS[0]);
+        let sigma = place(&axes, Place::of_shape(gamma), &[s, 0.0]).sigma.max(StudentT::SIGMAS[0]);
         let albedo = tables.albedo(sigma, gamma, masking)?;
         for &t in &axes[1].texels {
-            let cos = place(&axes, gamma, &[s, t]).cos.unwrap_or(1.0) as f32;
+            let cos = place(&axes, Place::of_shape(gamma), &[s, t]).cos.unwrap_or(1.0) as f32;
             let v = Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos);
             lost.push(f16::from_f32(albedo.lost(v).sqrt()));
         }

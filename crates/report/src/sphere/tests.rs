@@ -8,7 +8,7 @@ use flate2::read::DeflateDecoder;
 use glam::Vec3;
 use half::f16;
 use microfacet_export::Shape;
-use microfacet_export::texture::{TexelAxis, place};
+use microfacet_export::texture::{Place, TexelAxis, place};
 use microfacet_sampler::{Masking, Metal, Tables};
 use serde_json::Value;
 
@@ -80,13 +80,13 @@ fn the_albedo_texture_is_that_of_the_tables() {
     let mut worst: f64 = 0.0;
     for (layer, &gamma) in lost.chunks(rows * columns).zip(&subjects.stops) {
         for &row in &dense[0] {
-            let sigma = place(&axes, gamma, &[row, 0.0]).sigma;
+            let sigma = place(&axes, Place::of_shape(gamma), &[row, 0.0]).sigma;
             if sigma < SIGMA[0] {
                 continue;
             }
             let albedo = set.albedo(sigma, gamma, Masking::HeightCorrelated).unwrap();
             for &column in &dense[1] {
-                let at = place(&axes, gamma, &[row, column]);
+                let at = place(&axes, Place::of_shape(gamma), &[row, column]);
                 if at.cos.unwrap() < LEAST {
                     continue;
                 }

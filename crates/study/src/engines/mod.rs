@@ -35,7 +35,7 @@ fn places() -> Vec<Place> {
     let cosines: Vec<f64> = even.chain(low).collect();
     let rough = (1..=400).map(|k| (f64::from(k) / 400.0).powi(2));
     let of = |sigma| {
-        let place = move |&cos: &f64| Place { gamma: 2.0, sigma, cos: Some(cos) };
+        let place = move |&cos: &f64| Place { gamma: 2.0, sigma, eta: None, cos: Some(cos) };
         cosines.iter().map(place).collect::<Vec<_>>()
     };
     rough.flat_map(of).collect()

@@ -64,21 +64,12 @@ fn pane(side: Side, model: &Model<'_>, site: &Site) -> Result<Albedo<CHANNELS>, 
         return model.reflection(site, |_| [1.0, 0.0, 0.0]);
     }
     let eta = if side == Side::Dense { 1.0 / site.eta } else { site.eta };
-    let pane = Dielectric::new(eta)?;
-    // The cosine at which total reflection begins.
-    let kink = if eta < 1.0 { ((1.0 - eta) * (1.0 + eta)).sqrt() } else { 0.0 };
     let (model, sigma) = model.round(site)?;
-    let reflectance = |cos: f64| [pane.reflectance(cos)];
-    let reflected = if kink > 0.0 {
-        model.reflection_with_kink(sigma, site.cos, kink, reflectance)?
-    } else {
-        model.reflection(sigma, site.cos, reflectance)?
-    };
-    let transmitted = model.transmission(sigma, site.cos, pane)?;
-    let both = |r: [f64; 1], t: [f64; 1]| [r[0], t[0], 0.0];
+    let shares = model.interface(sigma, site.cos, Dielectric::new(eta)?)?;
+    let three = |[reflected, transmitted]: [f64; 2]| [reflected, transmitted, 0.0];
     Ok(Albedo {
-        uncorrelated: both(reflected.uncorrelated, transmitted.uncorrelated),
-        height_correlated: both(reflected.height_correlated, transmitted.height_correlated),
-        error: reflected.error.max(transmitted.error),
+        uncorrelated: three(shares.uncorrelated),
+        height_correlated: three(shares.height_correlated),
+        error: shares.error,
     })
 }

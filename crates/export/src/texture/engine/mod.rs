@@ -199,6 +199,7 @@ impl Layout {
         let directional = TextureSpec {
             name: self.name_of.into(),
             gamma,
+            eta: None,
             axes: (self.axes)(size).into(),
             masking: self.masking,
             channels: self.channels.to_vec(),
