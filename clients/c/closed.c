@@ -33,7 +33,7 @@ int main(void)
             see(&d, student_t_closed_d(gamma, both, w), want, want * (1.0f + fabsf(logf(want))));
         see(&g1, student_t_closed_masking(gamma, both, w), student_t_lobe_g1(&lobe, w), 1.0f);
         see(&e, student_t_closed_albedo(gamma, sigma, z),
-            student_t_lobe_albedo(&round, z, STUDENT_T_HEIGHT_CORRELATED), 1.0f);
+            student_t_lobe_albedo(&round, w, STUDENT_T_HEIGHT_CORRELATED), 1.0f);
     }
     printf("closed forms: D to %.1e (1 + |ln D|) of itself, of 2e-6 allowed; G1 to %.1e, of "
            "3.2e-4; E to %.1e, of 6.6e-3\n",

@@ -27,8 +27,9 @@ void fitted_albedos(const float *sigma, const float *cos_theta, float *e);
 void OF(exact, fitted)(float sigma, float cos_theta, float all[4])
 {
     const student_t_lobe lobe = student_t_gamma_2p7_lobe(sigma, sigma);
-    all[0] = student_t_lobe_albedo(&lobe, cos_theta, STUDENT_T_HEIGHT_CORRELATED);
-    student_t_lobe_albedo_parts(&lobe, cos_theta, STUDENT_T_HEIGHT_CORRELATED, all + 1);
+    const float v[3] = {sqrtf((1.0f - cos_theta) * (1.0f + cos_theta)), 0.0f, cos_theta};
+    all[0] = student_t_lobe_albedo(&lobe, v, STUDENT_T_HEIGHT_CORRELATED);
+    student_t_lobe_albedo_parts(&lobe, v, STUDENT_T_HEIGHT_CORRELATED, all + 1);
 }
 
 void OF(exact_albedos, fitted_albedos)(const float *sigma, const float *cos_theta, float *e)
@@ -36,7 +37,8 @@ void OF(exact_albedos, fitted_albedos)(const float *sigma, const float *cos_thet
     int i;
     for (i = 0; i < COUNT; ++i) {
         const student_t_lobe lobe = student_t_gamma_2p7_lobe(sigma[i], sigma[i]);
-        e[i] = student_t_lobe_albedo(&lobe, cos_theta[i], STUDENT_T_HEIGHT_CORRELATED);
+        const float z = cos_theta[i], v[3] = {sqrtf((1.0f - z) * (1.0f + z)), 0.0f, z};
+        e[i] = student_t_lobe_albedo(&lobe, v, STUDENT_T_HEIGHT_CORRELATED);
     }
 }
 

@@ -28,13 +28,13 @@ static double further_bounces(const student_t_shape *shape, const float sigma[2]
                               enum student_t_masking masking)
 {
     const int steps = 400;
-    const float e_v = student_t_albedo(shape, sigma, v[2], masking);
+    const float e_v = student_t_albedo(shape, sigma, v, masking);
     const float e_average = student_t_albedo_average(shape, sigma, masking);
     double sum = 0.0;
     for (int i = 0; i < steps; ++i) {
         const float t = ((float)i + 0.5f) / (float)steps, z = t * t * t;
         const float l[3] = {sqrtf(1.0f - z * z), 0.0f, z};
-        const float e_l = student_t_albedo(shape, sigma, l[2], masking);
+        const float e_l = student_t_albedo(shape, sigma, l, masking);
         sum += 2.0 * 3.14159265 * student_t_compensation_from(e_v, e_l, e_average) *
                (z * 3.0f * t * t) / steps;
     }

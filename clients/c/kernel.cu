@@ -19,14 +19,14 @@ extern "C" __global__ void kernel(const float *v, const float *u, float *m, floa
     m += 3 * i;
     student_t_sample_visible_normal(shape, sigma, v, u + 2 * i, m);
     student_t_reflect(v, m, l);
-    student_t_albedo_parts(shape, sigma, v[2], masking, parts);
+    student_t_albedo_parts(shape, sigma, v, masking, parts);
     student_t_albedo_average_parts(shape, sigma, masking, averages);
     out[i] = student_t_d(shape, sigma, m) + student_t_lambda(shape, sigma, v) +
              student_t_g2(shape, sigma, v, l, masking) +
              student_t_visible_normal_pdf(shape, sigma, v, m) +
              student_t_reflection_pdf(shape, sigma, v, m) +
              student_t_reflection_weight(shape, sigma, v, l, masking) +
-             student_t_albedo(shape, sigma, v[2], masking) +
+             student_t_albedo(shape, sigma, v, masking) +
              student_t_albedo_average(shape, sigma, masking) +
              student_t_compensation(shape, sigma, v, l, masking) + parts[1] + averages[2];
 }

@@ -18,6 +18,6 @@ int main(void)
     printf("light %.4f %.4f %.4f, f cos / pdf %.4f, pdf %.4f per steradian\n", (double)l[0],
            (double)l[1], (double)l[2], weight, pdf);
     printf("of all light one bounce returns %.4f\n",
-           (double)student_t_albedo(shape, sigma, v[2], masking));
+           (double)student_t_albedo(shape, sigma, v, masking));
     return 0;
 }

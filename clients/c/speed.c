@@ -152,13 +152,13 @@ static void bilinear(int i)
 static void shape_albedo(int i)
 {
     const student_t_lobe lobe = student_t_gamma_2p7_lobe(sigmas[i], sigmas[i]);
-    out[i] = student_t_lobe_albedo(&lobe, v[i][2], MASKING);
+    out[i] = student_t_lobe_albedo(&lobe, v[i], MASKING);
 }
 static void family_albedo(int i)
 {
     student_t_lobe lobe;
     student_t_set_lobe(gammas[i], sigmas[i], sigmas[i], &lobe);
-    out[i] = student_t_lobe_albedo(&lobe, v[i][2], MASKING);
+    out[i] = student_t_lobe_albedo(&lobe, v[i], MASKING);
 }
 
 /* The loop is inlined for each, as a renderer's would be. */

@@ -71,7 +71,8 @@ impl AlbedoTable {
                 worst(found.table, |of| of.outside),
             ],
         };
-        let average = |sigma: f64| average_of(found.table, sigma, gamma);
+        let average =
+            |sigma: f64| Some(average_of(&Albedo::from_table(found.table, sigma, gamma).ok()?));
         let mut parts = 1;
         while table.average_error > ENOUGH && parts <= FINEST {
             table.refine(parts, average)?;
@@ -92,8 +93,7 @@ impl AlbedoTable {
         let step = (last - first) / cells as f64;
         let sigma =
             |x: f64| self.roughness.quantity(first + x * step).clamp(self.sigma[0], self.sigma[1]);
-        let stored = |[lost, bias, f82]: [f64; 3]| [lost.max(f64::MIN_POSITIVE).ln(), bias, f82];
-        let at_node = |i: usize| Some(stored(average(sigma(i as f64))?).map(|x| x as f32));
+        let at_node = |i: usize| Some(stored(average(sigma(i as f64))?));
         let averages: Vec<[f32; 3]> = (0..=cells).map(at_node).collect::<Option<_>>()?;
         let nodes: Vec<f64> = (0..=cells).map(|i| i as f64).collect();
         let mut error = 0.0_f64;
@@ -117,13 +117,17 @@ impl AlbedoTable {
 }
 
 /// 1 − E_avg, and the averages of bias and F82.
-fn average_of(table: &Table, sigma: f64, gamma: f64) -> Option<[f64; 3]> {
-    let albedo = Albedo::from_table(table, sigma, gamma).ok()?;
+pub(super) fn average_of(albedo: &Albedo) -> [f64; 3] {
     let moments = albedo.average_moments();
-    Some([albedo.lost_average(), moments.bias, moments.f82].map(f64::from))
+    [albedo.lost_average(), moments.bias, moments.f82].map(f64::from)
+}
+
+/// Averages as they are written, with ln(1 − E_avg).
+pub(super) fn stored([lost, bias, f82]: [f64; 3]) -> [f32; 3] {
+    [lost.max(f64::MIN_POSITIVE).ln(), bias, f82].map(|x| x as f32)
 }
 
 /// The largest `figure` of a table's certificate over E, bias and F82.
-fn worst(table: &Table, figure: impl Fn(&Errors) -> Option<f64>) -> Option<f64> {
+pub(super) fn worst(table: &Table, figure: impl Fn(&Errors) -> Option<f64>) -> Option<f64> {
     table.certificate.errors.values().filter_map(figure).reduce(f64::max)
 }

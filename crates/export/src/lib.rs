@@ -29,6 +29,7 @@ mod realtime;
 mod shader;
 mod shape;
 pub mod texture;
+mod turning;
 
 pub use albedo::AlbedoTable;
 pub use family::Family;
@@ -37,6 +38,7 @@ pub use realtime::Realtime;
 pub use shader::{Group, Host, Kind, Language, Storage, texture_rows};
 pub use shader::{WIDTH, append_some, for_webgl, realtime_text, wgsl_crc32};
 pub use shape::Shape;
+pub use turning::TurningAlbedo;
 
 /// The language of an export.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]

@@ -3,8 +3,9 @@
 
 use microfacet_core::shape::s_of_gamma;
 use microfacet_sampler::port::ShapeTables;
+use microfacet_tables::axis::ViewBlend;
 
-use super::{AlbedoTable, Shape};
+use super::{AlbedoTable, Shape, TurningAlbedo};
 
 pub(super) struct Member {
     pub(super) name: &'static str,
@@ -139,15 +140,41 @@ fn albedo(table: &AlbedoTable) -> Vec<Member> {
         ("range", number(last - first)),
         ("sigma_min", number(table.sigma[0])),
         ("sigma_max", number(table.sigma[1])),
-        ("weight", number(view.weight)),
-        ("normal", number(view.normal)),
-        ("share", number(view.share)),
-        ("kappa", number(view.scale)),
-        ("spread", number(view.spread)),
-        ("floor", number(view.floor)),
-        ("slope", number(view.slope)),
     ];
-    members.map(|(name, value)| Member { name, value }).into()
+    let of_view = of_view(&view).map(|(name, x)| (name, number(x)));
+    members.into_iter().chain(of_view).map(|(name, value)| Member { name, value }).collect()
+}
+
+/// The members of a table by azimuth, in the order of those by roughness, of which it has none.
+pub(super) fn turning(table: &TurningAlbedo, [values, averages]: [String; 2]) -> Vec<Member> {
+    let view = table.view;
+    let number = |x: f64| Value::Number(x as f32);
+    let members = [
+        ("values", Value::Table(Some(values))),
+        ("averages", Value::Table(Some(averages))),
+        ("sigmas", Value::Count(table.azimuths)),
+        ("average_sigmas", Value::Count(1)),
+        ("views", Value::Count(table.views)),
+    ];
+    let of_sigma =
+        ["offset", "first", "slow", "linear", "start", "range", "sigma_min", "sigma_max"];
+    let of_sigma = of_sigma.map(|name| (name, Value::Number(0.0)));
+    let of_view = of_view(&view).map(|(name, x)| (name, number(x)));
+    let all = members.into_iter().chain(of_sigma).chain(of_view);
+    all.map(|(name, value)| Member { name, value }).collect()
+}
+
+/// The parameters of a coordinate of views.
+fn of_view(view: &ViewBlend) -> [(&'static str, f64); 7] {
+    [
+        ("weight", view.weight),
+        ("normal", view.normal),
+        ("share", view.share),
+        ("kappa", view.scale),
+        ("spread", view.spread),
+        ("floor", view.floor),
+        ("slope", view.slope),
+    ]
 }
 
 /// Names of the tables of albedos and of averages.

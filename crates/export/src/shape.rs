@@ -6,6 +6,7 @@ use microfacet_sampler::{MaterialError, Tables};
 use microfacet_tables::{Quantity, SIGMA_MAX};
 
 use super::albedo::AlbedoTable;
+use super::turning::TurningAlbedo;
 
 /// One shape γ: what lookups of any roughness read.
 #[derive(Clone, Debug)]
@@ -19,6 +20,8 @@ pub struct Shape {
     /// The forms of masking whose albedos are those of the default set, since the set that was
     /// asked for has none for every roughness.
     pub from_default: Vec<Masking>,
+    /// Albedos of lobes that are not round, for their own roughness.
+    pub turning: Vec<TurningAlbedo>,
     /// Errors of the tables against the model.
     pub errors: Errors,
     /// The program that baked the set.
@@ -69,6 +72,7 @@ impl Shape {
             tables: lobe,
             albedos: [a?, b?],
             from_default,
+            turning: TurningAlbedo::all(tables, gamma),
             errors,
             generator: provenance.generator.clone(),
             numerics: provenance.numerics,
@@ -78,6 +82,7 @@ impl Shape {
     /// Leaves out the albedos: functions then take the surface for a mirror.
     pub fn leave_out_albedos(&mut self) {
         self.albedos.iter_mut().for_each(AlbedoTable::leave_out);
+        self.turning.clear();
     }
 
     /// The larger of `of` under both forms of masking.

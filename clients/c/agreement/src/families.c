@@ -40,9 +40,9 @@ EXPORT void NAME(family)(const void *bytes, unsigned size, size_t count, const h
             a->g2[k] = student_t_lobe_g2(&lobe, h->v, h->l, masking);
             a->weight[k] = student_t_lobe_reflection_weight(&lobe, h->v, h->l, masking);
             a->f[k] = student_t_lobe_eval_pdf(&lobe, h->v, h->l, masking, &a->f_pdf[k]);
-            a->albedo[k] = student_t_lobe_albedo(&lobe, h->v[2], masking);
+            a->albedo[k] = student_t_lobe_albedo(&lobe, h->v, masking);
             a->average[k] = student_t_lobe_albedo_average(&lobe, masking);
-            student_t_lobe_albedo_parts(&lobe, h->v[2], masking, a->parts[k]);
+            student_t_lobe_albedo_parts(&lobe, h->v, masking, a->parts[k]);
             student_t_lobe_albedo_average_parts(&lobe, masking, a->average_parts[k]);
             a->compensation[k] = student_t_lobe_compensation(&lobe, h->v, h->l, masking);
         }

@@ -41,9 +41,9 @@ EXPORT void NAME(answer)(size_t shape, size_t count, const point *points, answer
             a->g2[k] = student_t_g2(s, p->sigma, p->v, p->l, masking);
             a->weight[k] = student_t_reflection_weight(s, p->sigma, p->v, p->l, masking);
             a->compensation[k] = student_t_compensation(s, p->sigma, p->v, p->l, masking);
-            a->albedo[k] = student_t_albedo(s, p->sigma, p->v[2], masking);
+            a->albedo[k] = student_t_albedo(s, p->sigma, p->v, masking);
             a->average[k] = student_t_albedo_average(s, p->sigma, masking);
-            student_t_albedo_parts(s, p->sigma, p->v[2], masking, a->parts[k]);
+            student_t_albedo_parts(s, p->sigma, p->v, masking, a->parts[k]);
             student_t_albedo_average_parts(s, p->sigma, masking, a->average_parts[k]);
         }
     }

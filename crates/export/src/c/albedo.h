@@ -1,31 +1,31 @@
 
 /* ---- Albedos --------------------------------------------------------------------------------- */
 
-/* Weights of the polynomial through six of n even nodes about x; returns the first of them. */
-STUDENT_T_FUNCTION int student_t_impl_six(float x, int n, float weights[6])
+/* Weights of the polynomial through six even nodes at a, a place among them from 0 to 5. */
+STUDENT_T_FUNCTION void student_t_impl_six_weights(float a, float weights[6])
 {
-    const float last = STUDENT_T_IMPL_CAST(float, n - 1);
-    const float at = student_t_impl_min(student_t_impl_max(x, 0.0f), last);
-    int start = STUDENT_T_IMPL_CAST(int, at) - 2;
-    float a, b, c, d, e, f;
-    start = start < n - 6 ? start : n - 6;
-    start = start > 0 ? start : 0;
-    a = at - STUDENT_T_IMPL_CAST(float, start);
-    b = a - 1.0f;
-    c = a - 2.0f;
-    d = a - 3.0f;
-    e = a - 4.0f;
-    f = a - 5.0f;
+    const float b = a - 1.0f, c = a - 2.0f, d = a - 3.0f, e = a - 4.0f, f = a - 5.0f;
     weights[0] = b * c * d * e * f * (-1.0f / 120.0f);
     weights[1] = a * c * d * e * f * (1.0f / 24.0f);
     weights[2] = a * b * d * e * f * (-1.0f / 12.0f);
     weights[3] = a * b * c * e * f * (1.0f / 12.0f);
     weights[4] = a * b * c * d * f * (-1.0f / 24.0f);
     weights[5] = a * b * c * d * e * (1.0f / 120.0f);
+}
+
+/* The same of six of n even nodes about x; returns the first of them. */
+STUDENT_T_FUNCTION int student_t_impl_six(float x, int n, float weights[6])
+{
+    const float last = STUDENT_T_IMPL_CAST(float, n - 1);
+    const float at = student_t_impl_min(student_t_impl_max(x, 0.0f), last);
+    int start = STUDENT_T_IMPL_CAST(int, at) - 2;
+    start = start < n - 6 ? start : n - 6;
+    start = start > 0 ? start : 0;
+    student_t_impl_six_weights(at - STUDENT_T_IMPL_CAST(float, start), weights);
     return start;
 }
 
-/* The albedos of a lobe, or of its round stand-in. */
+/* The albedos of a lobe, or of its round stand-in where none are baked for it. */
 typedef struct student_t_impl_albedo {
     enum student_t_masking masking;
     float sigma;             /* 0: a mirror */
@@ -34,8 +34,10 @@ typedef struct student_t_impl_albedo {
     const student_t_albedo_table *table;
     float coordinate;        /* in [0, 1] */
     float floor;             /* cosine of the first view */
-    int start;               /* of the six nodes along sigma */
+    int row[6];              /* the six nodes along sigma, or by azimuth */
     float weights[6];
+    /* Of a lobe that is not round, whose sigma, floor, rows and weights are those of a view: */
+    const student_t_turning_albedo *turning;
     /* Of a family, where there is no table: */
     const student_t_family *family;
     const student_t_volume *volume;
@@ -64,21 +66,47 @@ STUDENT_T_FUNCTION int student_t_impl_three(float x, float weights[3])
     return start;
 }
 
+/* The cosine of the first view of a table. */
+STUDENT_T_FUNCTION float student_t_impl_floor(const student_t_albedo_table *t, float sigma)
+{
+    return t->floor * (t->slope * sigma) / (t->floor + t->slope * sigma);
+}
+
+/* The albedos that were baked for a lobe, or none. */
+STUDENT_T_FUNCTION const student_t_turning_albedo *
+student_t_impl_turning_of(const student_t_lobe *lobe, enum student_t_masking masking)
+{
+    int i;
+    if (!lobe->shape) return STUDENT_T_IMPL_NULL;
+    for (i = 0; i < lobe->shape->turning_count; ++i) {
+        const student_t_turning_albedo *own = &lobe->shape->turning[i];
+        /* A difference of 0: compilers warn of floating-point numbers that are compared. */
+        const float off = fabsf(lobe->sigma_x - own->sigma_x) + fabsf(lobe->sigma_y - own->sigma_y);
+        if (own->masking == masking && !(off > 0.0f)) return own;
+    }
+    return STUDENT_T_IMPL_NULL;
+}
+
 /* Filled in where it stays, as lobes are. */
 STUDENT_T_FUNCTION void student_t_impl_albedo_of(const student_t_lobe *lobe,
                                                  enum student_t_masking masking,
                                                  student_t_impl_albedo *a)
 {
-    const student_t_impl_albedo none = {masking, 0.0f, 0.0f, STUDENT_T_IMPL_NULL, 0.0f, 0.0f, 0,
+    const student_t_impl_albedo none = {masking, 0.0f, 0.0f, STUDENT_T_IMPL_NULL, 0.0f, 0.0f,
+                                        {0, 0, 0, 0, 0, 0},
                                         {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f}, STUDENT_T_IMPL_NULL,
-                                        STUDENT_T_IMPL_NULL, {0, 0}, {0.0f, 0.0f, 0.0f},
-                                        {0.0f, 0.0f, 0.0f}};
+                                        STUDENT_T_IMPL_NULL, STUDENT_T_IMPL_NULL, {0, 0},
+                                        {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
     const int form = masking == STUDENT_T_UNCORRELATED ? 0 : 1;
     const float stand_in = sqrtf(lobe->sigma_x * lobe->sigma_y);
     /* What the other kind of tables needs stays 0: compilers warn of copies of what is not set. */
     *a = none;
     a->less = student_t_impl_min(2.0f * lobe->gamma - 3.0f, 1e30f);
-    if (lobe->albedos) {
+    a->turning = student_t_impl_turning_of(lobe, masking);
+    if (a->turning) {
+        a->table = &a->turning->table;
+        a->sigma = stand_in;
+    } else if (lobe->albedos) {
         const student_t_volume *t = &lobe->albedos->albedo[form];
         const float s =
             student_t_impl_min(student_t_impl_max(stand_in, t->sigmas[0]), t->sigmas[1]);
@@ -96,17 +124,50 @@ STUDENT_T_FUNCTION void student_t_impl_albedo_of(const student_t_lobe *lobe,
         if (t->codes[0] == 0u) a->sigma = 0.0f; /* without albedos nothing is lost */
     } else {
         const student_t_albedo_table *t = &lobe->shape->albedo[form];
+        int i;
         a->table = t;
         a->sigma = student_t_impl_min(student_t_impl_max(stand_in, t->sigma_min), t->sigma_max);
-        a->floor = t->floor * (t->slope * a->sigma) / (t->floor + t->slope * a->sigma);
+        a->floor = student_t_impl_floor(t, a->sigma);
         a->coordinate = log1pf(a->sigma / t->offset) + t->slow * logf(a->sigma / t->first) +
                        t->linear * a->sigma;
         a->coordinate = (a->coordinate - t->start) / t->range;
-        a->start = student_t_impl_six(
+        a->row[0] = student_t_impl_six(
             a->coordinate * STUDENT_T_IMPL_CAST(float, t->sigmas - 1), t->sigmas, a->weights);
+        for (i = 1; i < 6; ++i) a->row[i] = a->row[0] + i;
         if (!t->values) a->sigma = 0.0f; /* without albedos nothing is lost */
     }
     if (lobe->is_mirror) a->sigma = 0.0f;
+}
+
+/* The row of a node beyond either end of n azimuths, where a quarter turn is mirrored. */
+STUDENT_T_FUNCTION int student_t_impl_mirrored(int node, int n)
+{
+    while (n > 1 && (node < 0 || node >= n)) node = node < 0 ? -node : 2 * (n - 1) - node;
+    return n > 1 ? node : 0;
+}
+
+/* Albedos at the azimuth of v. The nodes are even in the angle half-way between that and the one
+ * in unit slopes; what replaces sigma is the roughness along v. */
+STUDENT_T_FUNCTION void student_t_impl_turned(student_t_impl_albedo *a, const float v[3])
+{
+    const student_t_turning_albedo *own = a->turning;
+    const float r = sqrtf(v[0] * v[0] + v[1] * v[1]);
+    float x = 1.0f, y = 0.0f, at;
+    int first, i;
+    /* Along the normal the azimuth is arbitrary; NaN fails the comparison, too. */
+    if (r > 0.0f && r < 1e30f) {
+        x = fabsf(v[0]) / r;
+        y = fabsf(v[1]) / r;
+    }
+    at = atan2f(sqrtf(own->sigma_y) * y, sqrtf(own->sigma_x) * x) * 0.63661977f; /* 2/pi */
+    at = student_t_impl_min(at, 1.0f) * STUDENT_T_IMPL_CAST(float, own->table.sigmas - 1);
+    x *= own->sigma_x;
+    y *= own->sigma_y;
+    a->sigma = sqrtf(x * x + y * y);
+    a->floor = student_t_impl_floor(a->table, a->sigma);
+    first = STUDENT_T_IMPL_CAST(int, at) - 2;
+    student_t_impl_six_weights(at - STUDENT_T_IMPL_CAST(float, first), a->weights);
+    for (i = 0; i < 6; ++i) a->row[i] = student_t_impl_mirrored(first + i, own->table.sigmas);
 }
 
 /* Within about how much of the horizon light is lost, as a cosine. */
@@ -198,10 +259,10 @@ STUDENT_T_FUNCTION void student_t_impl_moments_at(const student_t_impl_albedo *a
     const float views = STUDENT_T_IMPL_CAST(float, t->views - 1);
     const int first = student_t_impl_six(at * views, t->views, weights);
     /* Weights sum to 1: differences from a node in the middle have less to round than values. */
-    const float *middle = t->values + 3 * ((a->start + 2) * t->views + first + 2);
+    const float *middle = t->values + 3 * (a->row[2] * t->views + first + 2);
     int i, j, k;
     for (i = 0; i < 6; ++i) {
-        const float *node = t->values + 3 * ((a->start + i) * t->views + first);
+        const float *node = t->values + 3 * (a->row[i] * t->views + first);
         for (j = 0; j < 6; ++j, node += 3) {
             const float w = a->weights[i] * weights[j];
             for (k = 0; k < 3; ++k) sum[k] += w * (node[k] - middle[k]);
@@ -216,10 +277,9 @@ STUDENT_T_FUNCTION void student_t_impl_moments_at(const student_t_impl_albedo *a
 }
 
 /* E - 1, bias and F82 at any cosine, to the limits that they near with a power of it. */
-STUDENT_T_FUNCTION void student_t_impl_moments(const student_t_impl_albedo *a, float cos_theta,
-                                               float moments[3])
+STUDENT_T_FUNCTION void student_t_impl_moments_to_grazing(const student_t_impl_albedo *a, float mu,
+                                                          float moments[3])
 {
-    const float mu = student_t_impl_unit(cos_theta);
     moments[0] = 0.0f;
     if (a->sigma > 0.0f && !a->table) {
         float weights[4], bias, f82, e;
@@ -253,17 +313,30 @@ STUDENT_T_FUNCTION void student_t_impl_moments(const student_t_impl_albedo *a, f
     }
 }
 
+/* The same of a view; lobes that are not round look at its azimuth. */
+STUDENT_T_FUNCTION void student_t_impl_moments(const student_t_impl_albedo *a, const float v[3],
+                                               float moments[3])
+{
+    const float mu = student_t_impl_unit(v[2]);
+    if (a->turning && a->sigma > 0.0f) {
+        student_t_impl_albedo turned = *a;
+        student_t_impl_turned(&turned, v);
+        student_t_impl_moments_to_grazing(&turned, mu, moments);
+        return;
+    }
+    student_t_impl_moments_to_grazing(a, mu, moments);
+}
+
 /* The share of light lost, 1 - E, with its digits where E is close to 1. */
-STUDENT_T_FUNCTION float student_t_impl_lost(const student_t_impl_albedo *a, float cos_theta)
+STUDENT_T_FUNCTION float student_t_impl_lost(const student_t_impl_albedo *a, const float v[3])
 {
     float moments[3];
     if (a->sigma > 0.0f && !a->table) {
         float weights[4];
-        const int cell =
-            student_t_impl_view_of_volume(a, student_t_impl_unit(cos_theta), weights);
+        const int cell = student_t_impl_view_of_volume(a, student_t_impl_unit(v[2]), weights);
         return student_t_impl_lost_of_volume(a, cell, weights);
     }
-    student_t_impl_moments(a, cos_theta, moments);
+    student_t_impl_moments(a, v, moments);
     return -moments[0];
 }
 
@@ -299,6 +372,10 @@ STUDENT_T_FUNCTION void student_t_impl_averages(const student_t_impl_albedo *a, 
         averages[2] = sum[2] + e * averages[2];
         return;
     }
+    if (a->turning) {
+        for (i = 0; i < 3; ++i) averages[i] = t->averages[i];
+        return;
+    }
     i = student_t_impl_six(a->coordinate * STUDENT_T_IMPL_CAST(float, t->average_sigmas - 1),
                            t->average_sigmas, weights);
     node = t->averages + 3 * i;
@@ -325,27 +402,28 @@ STUDENT_T_FUNCTION void student_t_impl_limit(float e, float bias, float f82, flo
     parts[2] = student_t_impl_unit(f82);
 }
 
-/* Directional albedo E of one bounce with F = 1, in [0, 1], for a view or light of this cosine, of
- * the round lobe of sqrt(sigma_x sigma_y). */
+/* Directional albedo E of one bounce with F = 1, in [0, 1], for a view or light v: of the lobe if
+ * it is round or its shape has albedos of its roughness, and else of the round lobe of
+ * sqrt(sigma_x sigma_y), which is off by up to 0.6. */
 STUDENT_T_FUNCTION float student_t_lobe_albedo(const student_t_lobe *lobe,
-                                          float cos_theta, enum student_t_masking masking)
+                                          const float v[3], enum student_t_masking masking)
 {
     student_t_impl_albedo a;
     student_t_impl_albedo_of(lobe, masking, &a);
-    return 1.0f - student_t_impl_lost(&a, cos_theta);
+    return 1.0f - student_t_impl_lost(&a, v);
 }
 
 /* Its parts: Schlick's reflectance F0 + (F90 - F0)(1 - v.m)^5 has the albedo F0 scale + F90 bias,
  * with scale + bias = E. F82 is the moment of (v.m)(1 - v.m)^6 over its peak, at v.m = 1/7: a metal
  * of OpenPBR, whose tint lowers the reflectance there by b, has b F82 less. */
 STUDENT_T_FUNCTION void student_t_lobe_albedo_parts(const student_t_lobe *lobe,
-                                               float cos_theta, enum student_t_masking masking,
+                                               const float v[3], enum student_t_masking masking,
                                                float scale_bias_f82[3])
 {
     student_t_impl_albedo a;
     float moments[3];
     student_t_impl_albedo_of(lobe, masking, &a);
-    student_t_impl_moments(&a, cos_theta, moments);
+    student_t_impl_moments(&a, v, moments);
     student_t_impl_limit(1.0f + moments[0], moments[1], moments[2], scale_bias_f82);
 }
 
@@ -391,7 +469,7 @@ STUDENT_T_FUNCTION float student_t_lobe_compensation(const student_t_lobe *lobe,
     student_t_impl_albedo a;
     if (!(v[2] > 0.0f && l[2] > 0.0f)) return 0.0f;
     student_t_impl_albedo_of(lobe, masking, &a);
-    return student_t_impl_kulla_conty(student_t_impl_lost(&a, v[2]), student_t_impl_lost(&a, l[2]),
+    return student_t_impl_kulla_conty(student_t_impl_lost(&a, v), student_t_impl_lost(&a, l),
                                       student_t_impl_lost_average(&a));
 }
 

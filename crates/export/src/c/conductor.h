@@ -314,12 +314,13 @@ STUDENT_T_FUNCTION float student_t_impl_conductor_share(const student_t_conducto
     return broad > 0.0f ? facets / (facets + broad) : 1.0f;
 }
 
-/* One bounce and the compensation of what it loses of the view's light, at a cosine of the light
- * above 0. */
+/* One bounce and the compensation of what it loses of the view's light, for a light above the
+ * horizon. */
 STUDENT_T_FUNCTION student_t_impl_mixture
-student_t_impl_conductor_mixture(const student_t_conductor *c, float lost, float cosine,
+student_t_impl_conductor_mixture(const student_t_conductor *c, float lost, const float l[3],
                                  const student_t_impl_white *white)
 {
+    const float cosine = l[2];
     student_t_impl_mixture m;
     int i;
     student_t_reflectance_at(&c->reflectance, white->cosine, m.facets);
@@ -337,7 +338,7 @@ student_t_impl_conductor_mixture(const student_t_conductor *c, float lost, float
         /* pi times the lobe of Kulla & Conty 2017; what loses nothing gets nothing back. */
         const float factor = student_t_impl_grazing_factor(&c->grazing, cosine);
         const float lobe = c->lost > STUDENT_T_SMALLEST
-                               ? lost * student_t_impl_lost(&c->albedo, cosine) / c->lost
+                               ? lost * student_t_impl_lost(&c->albedo, l) / c->lost
                                : 0.0f;
         for (i = 0; i < STUDENT_T_CHANNELS; ++i) m.broad[i] = c->bounces[i] * lobe / factor;
         m.broad_pdf = factor * (cosine * STUDENT_T_IMPL_INVERSE_PI);
@@ -372,7 +373,7 @@ STUDENT_T_FUNCTION student_t_sample student_t_conductor_sample(const student_t_c
         for (i = 0; i < STUDENT_T_CHANNELS; ++i) s.weight[i] *= white.weight;
         s.pdf = white.pdf;
     } else {
-        const float lost = student_t_impl_lost(&c->albedo, v[2]);
+        const float lost = student_t_impl_lost(&c->albedo, v);
         student_t_impl_mixture mixture;
         if (student_t_impl_choice(choice) < student_t_impl_conductor_share(c, lost)) {
             if (!student_t_impl_draw(c->lobe, c->masking, v, u, s.m, s.l, &white))
@@ -385,7 +386,7 @@ STUDENT_T_FUNCTION student_t_sample student_t_conductor_sample(const student_t_c
             scale = 0.5f / student_t_impl_max(white.cosine, 1e-19f); /* 1/|v + l| */
             for (i = 0; i < 3; ++i) s.m[i] *= scale;
         }
-        mixture = student_t_impl_conductor_mixture(c, lost, s.l[2], &white);
+        mixture = student_t_impl_conductor_mixture(c, lost, s.l, &white);
         student_t_impl_mixture_weight(&mixture, s.weight);
         s.pdf = student_t_impl_mixture_pdf(&mixture);
     }
@@ -412,9 +413,9 @@ STUDENT_T_FUNCTION float student_t_conductor_eval_pdf(const student_t_conductor 
         for (i = 0; i < STUDENT_T_CHANNELS; ++i) f[i] *= all;
         return white.pdf;
     } else {
-        const float lost = student_t_impl_lost(&c->albedo, v[2]);
+        const float lost = student_t_impl_lost(&c->albedo, v);
         const student_t_impl_mixture mixture =
-            student_t_impl_conductor_mixture(c, lost, l[2], &white);
+            student_t_impl_conductor_mixture(c, lost, l, &white);
         for (i = 0; i < STUDENT_T_CHANNELS; ++i)
             f[i] = student_t_impl_finite(
                 student_t_impl_f(mixture.facets[i], mixture.facets_pdf, inverse) +

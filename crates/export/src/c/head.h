@@ -59,7 +59,9 @@
  * the family, too. Define it in all translation units of a program or in none.
  * They are those of round lobes. Where sigma_x and sigma_y differ, that of sqrt(sigma_x
  * sigma_y) stands in. It is off by some 0.07 where one is twice the other, and by up to 0.6, and
- * the compensating lobe then gives back so much too little or too much. All else is exact.
+ * the compensating lobe then gives back so much too little or too much. All else is exact. A shape
+ * from a set that was baked for lobes that are not round has their own, which are those of every
+ * lobe of exactly this sigma_x and sigma_y.
  *
  * Accuracy. A family reads its tables as 16-bit codes: G1 agrees with the crate's Family to 5e-6,
  * normals to 1e-5 of the cumulative distribution, E to 2.5e-4. The file of a shape lists the errors
@@ -89,7 +91,7 @@
 #define STUDENT_T_H
 
 /* Raised whenever the layout of tables changes: their files ask for theirs. */
-#define STUDENT_T_LAYOUT 3
+#define STUDENT_T_LAYOUT 4
 
 #if !defined(__CUDACC_RTC__) && !defined(__HIPCC_RTC__)
 #include <math.h>
@@ -140,6 +142,16 @@ typedef struct student_t_albedo_table {
     float weight, normal, share, kappa, spread, floor, slope;
 } student_t_albedo_table;
 
+/* The albedos of one lobe that is not round, baked for it. They are those of every lobe of the
+ * shape with exactly this roughness. */
+typedef struct student_t_turning_albedo {
+    float sigma_x, sigma_y;
+    enum student_t_masking masking;
+    /* By azimuth in place of sigma, over a quarter turn, and one row of averages. Of its members
+     * about sigma there is none but their number. */
+    student_t_albedo_table table;
+} student_t_turning_albedo;
+
 /* What lookups of one gamma read of tables that may have more of them. */
 typedef struct student_t_constants {
     int masking_crowded;   /* whether the coordinate of masking is 1 - sqrt(1 - it) */
@@ -178,6 +190,8 @@ typedef struct student_t_shape {
     const float *heavy;    /* [cells + 1][4]: cubics, of the share of visible normals that is in no
                             * table; none for gamma >= 1.8 */
     student_t_albedo_table albedo[2]; /* by student_t_masking */
+    const student_t_turning_albedo *turning; /* of lobes that are not round, or none */
+    int turning_count;
 } student_t_shape;
 
 /* One of the two ranges of gamma of a family. Tables are at offsets, in bytes from the family; a

@@ -30,7 +30,7 @@
 
 #include "student_t.h"
 
-#if STUDENT_T_LAYOUT != 3
+#if STUDENT_T_LAYOUT != 4
 #error "student_t.h is of another version than student_t_materials.h: export both again"
 #endif
 

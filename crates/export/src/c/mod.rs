@@ -2,6 +2,7 @@
 
 mod family;
 mod interface;
+mod turning;
 
 use std::fmt::Write;
 
@@ -46,7 +47,7 @@ const FRONT: &str = include_str!("student_t.hpp");
 const FRONT_NAME: &str = "student_t.hpp";
 
 /// `STUDENT_T_LAYOUT` of the header.
-pub(super) const LAYOUT: u32 = 3;
+pub(super) const LAYOUT: u32 = 4;
 
 pub(super) fn files(shapes: &[Shape]) -> Vec<ExportFile> {
     let mut files = functions();
@@ -130,7 +131,7 @@ fn text(shape: &Shape, name: &str) -> String {
         let array = format!("float {name}_{}[{count}]", part.name);
         writeln!(text, "\nSTUDENT_T_DATA {array} = {{\n{}\n}};", lines(items)).expect("memory");
     }
-    text + &definition(shape, name) + "\n#endif\n"
+    text + &turning::tables(&shape.turning, name) + &definition(shape, name) + "\n#endif\n"
 }
 
 /// The comment at the head of a shape's file.
@@ -171,13 +172,14 @@ fn comment(shape: &Shape, name: &str) -> String {
 {lobe} *   albedo and its parts: {} for sigma >= 0.01 and cos theta >= 0.02, {} elsewhere
  *   averages: those of the albedo, and for this gamma {} by interpolation
  * Albedos have tables for sigma from {low} to {high}.
-{from_default} */
+{from_default}{} */
 ",
         shape.generator,
         shape.numerics,
         worst(|table| table.errors[0]),
         worst(|table| table.errors[1]),
         worst(|table| Some(table.average_error)),
+        turning::comment(&shape.turning),
     )
 }
 
@@ -218,7 +220,9 @@ STUDENT_T_DATA student_t_shape {name} = {{
     {is_ggx}, /* is_ggx */
     {{\n{law}    }},
     {{\n{constants}    }},
-{tables}    {{{{\n{a}    }}, {{\n{b}    }}}}
+{tables}    {{{{\n{a}    }}, {{\n{b}    }}}},
+    {}, /* turning */
+    {} /* turning_count */
 }};
 
 /* The lobe of this shape and a roughness along x and y. */
@@ -226,7 +230,9 @@ STUDENT_T_FUNCTION student_t_lobe {name}_lobe(float sigma_x, float sigma_y)
 {{
     return student_t_lobe_of(&{name}, sigma_x, sigma_y);
 }}
-"
+",
+        turning::pointer(&shape.turning, name),
+        shape.turning.len()
     )
 }
 
@@ -310,7 +316,8 @@ mod tests {
         assert_eq!(members("student_t_law"), names(&law));
         assert_eq!(members("student_t_constants"), names(&constants));
         let first = ["gamma", "is_ggx", "law", "constants"];
-        let all = [&first[..], &names(&tables), &["albedo[2]"]].concat();
+        let last = ["albedo[2]", "turning", "turning_count"];
+        let all = [&first[..], &names(&tables), &last].concat();
         assert_eq!(members("student_t_shape"), all);
         let albedo = names(&uncorrelated);
         assert_eq!(members("student_t_albedo_table"), albedo);

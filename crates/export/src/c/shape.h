@@ -73,20 +73,20 @@ STUDENT_T_FUNCTION float student_t_reflection_weight(const student_t_shape *shap
 }
 
 STUDENT_T_FUNCTION float student_t_albedo(const student_t_shape *shape, const float sigma[2],
-                                          float cos_theta, enum student_t_masking masking)
+                                          const float v[3], enum student_t_masking masking)
 {
     student_t_lobe lobe;
     student_t_impl_make(&lobe, shape, sigma[0], sigma[1]);
-    return student_t_lobe_albedo(&lobe, cos_theta, masking);
+    return student_t_lobe_albedo(&lobe, v, masking);
 }
 
 STUDENT_T_FUNCTION void student_t_albedo_parts(const student_t_shape *shape, const float sigma[2],
-                                               float cos_theta, enum student_t_masking masking,
+                                               const float v[3], enum student_t_masking masking,
                                                float scale_bias_f82[3])
 {
     student_t_lobe lobe;
     student_t_impl_make(&lobe, shape, sigma[0], sigma[1]);
-    student_t_lobe_albedo_parts(&lobe, cos_theta, masking, scale_bias_f82);
+    student_t_lobe_albedo_parts(&lobe, v, masking, scale_bias_f82);
 }
 
 STUDENT_T_FUNCTION float student_t_albedo_average(const student_t_shape *shape,
