@@ -58,7 +58,7 @@ impl Site {
             match axis.mapping {
                 Mapping::LogShape(_) => site.gamma = quantity(),
                 Mapping::LogRoughness(_) => site.sigma = quantity(),
-                Mapping::ReflectanceRoot => site.eta = quantity(),
+                Mapping::ReflectanceRoot | Mapping::CrossingRoot(_) => site.eta = quantity(),
                 Mapping::Azimuth(azimuth) => {
                     let azimuth = azimuth.prepare(axis.len());
                     let [c, s] = azimuth.direction(t);
