@@ -3,10 +3,10 @@
 //! Each coordinate has a file with its formula, its inverse, the spacing of its nodes, the checks
 //! of its parameters, and the fast evaluations that lookups use, which tests compare with the
 //! formula: [`InverseShape`] and [`LogShape`] of γ, [`LogRoughness`] of σ, [`ReflectanceRoot`] and
-//! [`CrossingRoot`] of η, [`HalfTangent`], [`Rational`], [`ViewBlend`] and [`CriticalBlend`] of the elevation of a
-//! view, [`Azimuth`] of its azimuth, [`MirroredRoot`] and [`OddRoot`] of a random number. Baking,
-//! lookups, measurement and export all call them. Interpolation is by Lagrange polynomials
-//! ([`lagrange`]) or by Hermite cells.
+//! [`CrossingRoot`] of η, [`HalfTangent`], [`Rational`], [`ViewBlend`] and [`CriticalBlend`] of the
+//! elevation of a view, [`Azimuth`] of its azimuth, [`MirroredRoot`] and [`OddRoot`] of a random
+//! number. Baking, lookups, measurement and export all call them. Interpolation is by Lagrange
+//! polynomials ([`lagrange`]) or by Hermite cells.
 
 use alloc::format;
 use alloc::string::String;

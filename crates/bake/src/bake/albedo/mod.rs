@@ -7,6 +7,7 @@
 //! rounding rather than to the interpolation error.
 
 mod albedo_spec;
+mod coarse;
 mod integrand;
 mod lobe;
 
@@ -26,6 +27,7 @@ use microfacet_tables::{
 use crate::progress::Stage;
 
 pub use albedo_spec::AlbedoSpec;
+pub use coarse::CoarseNodes;
 pub use integrand::{Integrand, weights};
 pub use lobe::{AlbedoLobe, Model, Models};
 pub(crate) use lobe::{area_ratio, ellipsoid, stated};
