@@ -60,6 +60,10 @@ pub(super) struct Args {
     /// that open no parts. Such a folder is no set.
     #[arg(long)]
     split: bool,
+    /// Bake the albedos of common glass too (eta 1.3 to 1.7, gamma 2 to inf, sigma up to 1), as
+    /// the default set has them; takes several times as long.
+    #[arg(long, conflicts_with_all = ["scene", "no_albedo"])]
+    glass: bool,
     #[command(flatten)]
     request: Request,
     /// Choose each table's nodes and precision instead: small tables whose measured error (of G1,
@@ -222,7 +226,10 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let library = match args.recipe.as_deref() {
         Some(path) => args.library(path)?,
         None => Library {
-            parts: vec![Part { scene: Scene::default(), plan: args.request.general_plan() }],
+            parts: vec![Part {
+                scene: Scene::default(),
+                plan: args.request.general_plan(args.glass),
+            }],
         },
     };
     if let Some(scene) = &args.recipe {

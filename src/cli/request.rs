@@ -7,7 +7,7 @@ use microfacet_baker::plan::{AlbedoWish, Options, Plan};
 use microfacet_baker::scene::Scene;
 use microfacet_baker::table_spec::Quality;
 use microfacet_sampler::Tables;
-use microfacet_tables::{Precision, Table};
+use microfacet_tables::{Precision, Reflectance, Table};
 
 use super::values::{self, Named, named};
 use super::words::count;
@@ -105,9 +105,9 @@ impl Request {
         self.strict
     }
 
-    /// The plan of the general set.
-    pub(super) fn general_plan(&self) -> Plan {
-        let mut plan = Plan::general();
+    /// The plan of the general set, or of the default set, which has common glass as well.
+    pub(super) fn general_plan(&self, with_glass: bool) -> Plan {
+        let mut plan = if with_glass { Plan::default_set() } else { Plan::general() };
         if self.no_albedo {
             plan.albedos.clear();
         }
@@ -163,6 +163,9 @@ impl Request {
         let embedded = Tables::embedded();
         let (albedos, others): (Vec<&Table>, Vec<&Table>) =
             embedded.tables().iter().partition(|table| table.kind.is_albedo());
+        // Those of dielectrics are baked for every scene that asks for them.
+        let is_mirror = |table: &&&Table| table.subject.reflectance == Some(Reflectance::Mirror);
+        let albedos: Vec<&Table> = albedos.iter().filter(is_mirror).copied().collect();
         let worst = |tables: &[&Table]| {
             tables.iter().map(|table| table.certificate.worst()).fold(0.0, f64::max)
         };

@@ -58,8 +58,8 @@ fn a_shape_is_a_small_header_beside_the_functions() {
 #[test]
 fn an_index_without_tables_is_refused_with_what_adds_them() {
     let folder = tempfile::tempdir().unwrap();
-    let why = refused(folder.path(), &["export", "c", "--eta", "1.5", "--out", "out"]);
-    assert!(why.contains("fresnel = { dielectric = 1.5 }"), "{why}");
+    let why = refused(folder.path(), &["export", "c", "--eta", "2.4", "--out", "out"]);
+    assert!(why.contains("fresnel = { dielectric = 2.4 }"), "{why}");
     assert!(!folder.path().join("out").exists());
     refused(folder.path(), &["export", "c", "--out", "out"]);
 }

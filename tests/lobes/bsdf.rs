@@ -330,14 +330,14 @@ fn the_lines_of_an_error_make_what_is_missing() {
     }
 }
 
-/// A rough plastic with compensation does not bind to the default set, but to a set of the error's
-/// lines.
+/// A rough plastic of an uncommon index with compensation does not bind to the default set, but to
+/// a set of the error's lines.
 #[test]
 fn the_lines_of_a_message_make_a_plastic() {
     let bind = |set: &Tables| {
         let coat = Tables::embedded().student_t(0.3, 2.5).unwrap();
         let settings = BsdfSettings::new().compensated(Compensation::KullaConty, set);
-        Plastic::new(coat, 1.5, [0.1, 0.4, 0.2], settings)
+        Plastic::new(coat, 2.4, [0.1, 0.4, 0.2], settings)
     };
     let lines = lines(&bind(&Tables::embedded()).unwrap_err());
     bind(&draft(&lines)).expect(&lines);

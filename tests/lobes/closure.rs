@@ -95,7 +95,7 @@ fn a_smooth_dielectric_closes() {
     for side in [Side::Thin, Side::Dense] {
         let reflectance = Reflectance::Interface { side, index: [1.5; 2].into() };
         let maskings = vec![Masking::HeightCorrelated];
-        let need = RequiredAlbedo { lobe: lobe.clone(), reflectance, maskings };
+        let need = RequiredAlbedo { lobe: lobe.clone(), reflectance, maskings, coarse: false };
         let table = bake(&need.spec(Quality::Draft, Precision::F32).unwrap()).unwrap().remove(0);
         let curve = ViewCurve::<2>::from_table(&table, 0.01, 2.0, 1.5).unwrap();
         let want = over_views(|v| curve.eval(v));

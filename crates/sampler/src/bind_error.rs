@@ -8,7 +8,7 @@ use core::fmt;
 use microfacet_core::{Masking, SkewError};
 use microfacet_tables::Range;
 
-use crate::error::MaterialError;
+use crate::error::{Covered, MaterialError};
 use crate::material::{LobeKey, RadialError};
 
 /// Why a BSDF, or a named material, cannot be made: a number outside its domain, an albedo that the
@@ -52,6 +52,8 @@ pub enum BindError {
         eta: Option<f64>,
         /// The form of masking.
         masking: Masking,
+        /// What the nearest table of dielectrics covers, of a dielectric.
+        nearest: Option<Covered>,
         /// Whether the round lobe of √(σx σy) could stand in.
         stand_in: bool,
     },
@@ -111,12 +113,15 @@ impl fmt::Display for BindError {
                  half a turn about the normal leaves the lobe as it is; take an upright lobe \
                  (theta = 0), or state that a lobe or BSDF of your own is one by `is_symmetric`"
             ),
-            Self::NoAlbedo { lobe, eta, masking, stand_in } => {
+            Self::NoAlbedo { lobe, eta, masking, nearest, stand_in } => {
                 write!(f, "the tables hold no albedo of this lobe, {lobe}")?;
                 if let Some(eta) = eta {
                     write!(f, ", of a dielectric of index {eta}")?;
                 }
                 write!(f, " with {masking} masking, which compensation needs")?;
+                if let Some(nearest) = nearest {
+                    write!(f, "; the nearest that they hold is {nearest}")?;
+                }
                 if *stand_in {
                     write!(f, "; let the round lobe stand in with `StandIn::Round`, or")?;
                 } else {

@@ -22,7 +22,7 @@
 //! use microfacet_sampler::{Metal, Tables, Transport};
 //!
 //! fn main() -> Result<(), microfacet_sampler::BindError> {
-//!     let tables = Tables::embedded(); // 1.7 MB, compiled in; or Tables::from_bytes(&file)
+//!     let tables = Tables::embedded(); // 2.0 MB, compiled in; or Tables::from_bytes(&file)
 //!     let settings = BsdfSettings::new().compensated(Compensation::KullaConty, &tables);
 //!     let gold = Conductor::new(tables.student_t(0.3, 2.5)?, Metal::Gold, settings)?;
 //!
@@ -108,7 +108,7 @@
 //!   `wasm32-unknown-unknown`. Nothing depends on the width of pointers or on the order of bytes:
 //!   the tests pass on 32 bits too (`.ci/wasm`), and those of the files on big-endian `s390x`
 //!   (`cargo +nightly miri test -p microfacet-tables --target s390x-unknown-linux-gnu --lib`).
-//! - `embedded` (default): the default set, [`Tables::embedded`], 1.7 MB of γ ∈ [1.501, ∞].
+//! - `embedded` (default): the default set, [`Tables::embedded`], 2.0 MB of γ ∈ [1.501, ∞].
 //! - No unsafe code, but for the instructions of 8 lanes, in the small crate `microfacet-lanes`.
 //!   Batches run in 8 lanes where the processor has AVX2 (without `std`: where it is compiled in),
 //!   and in 4 elsewhere, with the same bits. Every type is `Send` and `Sync`; nothing is cached

@@ -44,8 +44,9 @@ pub(super) struct CArgs {
     #[arg(long, conflicts_with = "gamma")]
     family: bool,
     /// Index of refraction, inside over outside, of dielectrics and plastics: shares of light by
-    /// gamma and sigma, from a set whose recipe has a dielectric of it with a range of sigma. The
-    /// default set has none. Several are separated by commas, or in options of their own.
+    /// gamma and sigma, from a set whose recipe has a dielectric of it with a range of sigma, or
+    /// from the default set, which has 1.3 to 1.7. Several are separated by commas, or in options
+    /// of their own.
     #[arg(long, value_name = "N", value_delimiter = ',', value_parser = values::finite)]
     eta: Vec<f64>,
     /// Write the tables of the family as a file of bytes, which a program reads, not as text.

@@ -81,7 +81,7 @@ impl<'a> Report<'a> {
         let Part { scene, plan } = part;
         let (quality, precision) = (request.quality(), request.precision());
         let outline = Outline::new(scene, plan, quality, precision)?;
-        let general = costs(&request.general_plan(), quality, precision)?.into_iter().sum();
+        let general = costs(&request.general_plan(false), quality, precision)?.into_iter().sum();
         Ok(Self { outline, general, milliseconds: [0.0; 2] })
     }
 }

@@ -21,7 +21,7 @@ pub use radial::{bake_radial, radial_axes, radial_bytes};
 
 /// Number of the numeric method: raised when the same specification gives other values or
 /// certificates. It is part of every file and of every cache key.
-pub const NUMERICS: u32 = 11;
+pub const NUMERICS: u32 = 12;
 
 /// u at which the ends of a mirrored axis are evaluated where u = 0 itself is an infinite slope:
 /// 2⁻⁴⁰. For Beckmann it keeps every stored slope below 5.3; the CDF error it causes is 2⁻⁴⁰ too.

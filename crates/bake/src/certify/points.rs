@@ -71,7 +71,7 @@ impl Range {
                 let Interval { min, max } = spec.lobe.roughness.x();
                 of([PROMISED.0.min(max).max(min).max(SMOOTHEST), max.max(SMOOTHEST)])
             }
-            Mapping::ReflectanceRoot => {
+            Mapping::ReflectanceRoot | Mapping::CrossingRoot(_) => {
                 of(spec.reflectance.indices().unwrap_or(Interval::UNIT).into())
             }
             Mapping::Azimuth(_) if axis.len() == 1 => [0.0; 2],

@@ -4,13 +4,15 @@
 use std::collections::HashMap;
 
 use microfacet_sampler::Masking;
-use microfacet_tables::{LobeForm, LobeSpec, Precision, Reflectance, Roughness, SIGMA_MAX};
+use microfacet_tables::{
+    Interval, LobeForm, LobeSpec, Precision, Reflectance, Roughness, SIGMA_MAX, Side,
+};
 
 use super::cost::AlbedoWork;
 use super::key::{self, Numbers, distinct};
 use super::part::Part;
-use super::{NotCovered, Options, refusal};
-use crate::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec};
+use super::{GGX, NotCovered, Options, refusal};
+use crate::bake::albedo::{AlbedoError, AlbedoLobe, AlbedoSpec, CoarseNodes};
 use crate::scene::{Format, Material};
 use crate::table_spec::{Level, Quality};
 
@@ -43,13 +45,36 @@ pub struct RequiredAlbedo {
     pub reflectance: Reflectance,
     /// The forms of masking.
     pub maskings: Vec<Masking>,
+    /// Whether the tables are [coarse](CoarseNodes), of one side of a dielectric.
+    #[serde(default, skip_serializing_if = "core::ops::Not::not")]
+    pub coarse: bool,
 }
 
 impl RequiredAlbedo {
     /// The moments of the whole domain of the tables.
     pub fn general() -> Self {
         let (lobe, reflectance) = (LobeSpec::GENERAL, Reflectance::Mirror);
-        Self { lobe, reflectance, maskings: Masking::ALL.into() }
+        Self { lobe, reflectance, maskings: Masking::ALL.into(), coarse: false }
+    }
+
+    /// Glass and plastic of common indices under height-correlated masking, seen from either side:
+    /// what the default set holds of dielectrics.
+    pub fn common_glass() -> [Self; 2] {
+        let sigma = Roughness::isotropic(Interval { min: 0.0, max: 1.0 });
+        let lobe = AlbedoLobe::family(sigma, Interval { min: GGX, max: f64::INFINITY });
+        let index = Interval { min: 1.3, max: 1.7 };
+        [Side::Thin, Side::Dense].map(|side| Self {
+            lobe: lobe.clone(),
+            reflectance: Reflectance::Interface { side, index },
+            maskings: vec![Masking::HeightCorrelated],
+            coarse: true,
+        })
+    }
+
+    /// The precision in which the tables are stored where one is asked for: coarse ones have no use
+    /// for more than 16 bits.
+    pub(crate) fn stored(&self, asked: Precision) -> Precision {
+        if self.coarse && asked == Precision::F32 { Precision::U16 } else { asked }
     }
 
     /// Whether averages are baked as well, which only moments of a range of the family have.
@@ -66,7 +91,13 @@ impl RequiredAlbedo {
         level: impl Into<Level>,
         precision: Precision,
     ) -> Result<AlbedoSpec, AlbedoError> {
-        let Self { lobe, reflectance, maskings } = self.clone();
+        let Self { lobe, reflectance, maskings, coarse } = self.clone();
+        if let Reflectance::Interface { side, index } = reflectance
+            && coarse
+        {
+            let (nodes, precision) = (CoarseNodes::at(level.into()), self.stored(precision));
+            return Ok(AlbedoSpec::coarse(lobe, (side, index), maskings, &nodes, precision));
+        }
         AlbedoSpec::new(lobe, reflectance, maskings, level, precision)
     }
 }
@@ -134,7 +165,8 @@ impl Needs {
             self.families[i].push(self.all.len());
         }
         self.of.insert(key, self.all.len());
-        self.all.push(RequiredAlbedo { lobe, reflectance, maskings: vec![masking] });
+        let maskings = vec![masking];
+        self.all.push(RequiredAlbedo { lobe, reflectance, maskings, coarse: false });
         Ok(())
     }
 

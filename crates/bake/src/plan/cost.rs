@@ -57,7 +57,9 @@ pub(crate) fn bare_bytes(provenance: &Provenance) -> usize {
         Mapping::Azimuth(_) => {
             some(&|entry| entry.lobes().any(|lobe| !lobe.tabulated().is_family()))
         }
-        Mapping::ReflectanceRoot | Mapping::CriticalBlend(_) => some(&dielectric),
+        Mapping::ReflectanceRoot | Mapping::CrossingRoot(_) | Mapping::CriticalBlend(_) => {
+            some(&dielectric)
+        }
         _ => has("visible_slope"),
     });
     // Two quotes with their escapes, a colon and a comma.

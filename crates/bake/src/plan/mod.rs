@@ -127,6 +127,14 @@ impl Plan {
         }
     }
 
+    /// The plan of the default set, which is compiled into the sampler: the general set, and
+    /// albedos of common glass.
+    pub fn default_set() -> Self {
+        let mut plan = Self::general();
+        plan.albedos.extend(RequiredAlbedo::common_glass());
+        plan
+    }
+
     /// The plan of a scene.
     ///
     /// # Errors

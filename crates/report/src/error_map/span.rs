@@ -33,7 +33,7 @@ impl Quantity {
         match axis.mapping {
             Mapping::InverseShape | Mapping::LogShape(_) => Self::Gamma,
             Mapping::LogRoughness(_) => Self::Sigma,
-            Mapping::ReflectanceRoot => Self::Eta,
+            Mapping::ReflectanceRoot | Mapping::CrossingRoot(_) => Self::Eta,
             Mapping::Azimuth(_) => Self::Azimuth,
             Mapping::ViewBlend(_) | Mapping::CriticalBlend(_) => Self::Cosine,
             Mapping::MirroredRoot | Mapping::OddRoot => Self::Number,

@@ -112,7 +112,7 @@ pub fn axis(axis: &Axis) -> String {
     let (what, extent) = match axis.mapping {
         Mapping::InverseShape | Mapping::LogShape(_) => ("the shape gamma", ends()),
         Mapping::LogRoughness(_) => ("the roughness sigma", ends()),
-        Mapping::ReflectanceRoot => ("the index of refraction", ends()),
+        Mapping::ReflectanceRoot | Mapping::CrossingRoot(_) => ("the index of refraction", ends()),
         Mapping::Azimuth(azimuth) if azimuth.fold => {
             ("the azimuth of the view", "a quarter of a turn, which repeats mirrored".into())
         }
@@ -134,7 +134,7 @@ fn coordinate(mapping: &Mapping) -> String {
         Mapping::InverseShape => "in 1/(gamma - 1)",
         Mapping::LogShape(_) => "in a logarithm of the shape",
         Mapping::LogRoughness(_) => "in a logarithm of the roughness",
-        Mapping::ReflectanceRoot => "in the fourth root of F0",
+        Mapping::ReflectanceRoot | Mapping::CrossingRoot(_) => "in the fourth root of F0",
         Mapping::HalfTangent(_) => "in tan(atan(z)/2)",
         Mapping::Rational(_) => "in z/(z + kappa)",
         Mapping::ViewBlend(_) => "in a blend of roots of cos(theta)",

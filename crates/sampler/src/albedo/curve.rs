@@ -60,7 +60,7 @@ impl MaterialWeights {
                     collapsed.sigma = sigma.max(first);
                     collapsed.sigma
                 }
-                Mapping::ReflectanceRoot => index(axis, point)?,
+                Mapping::ReflectanceRoot | Mapping::CrossingRoot(_) => index(axis, point)?,
                 _ => break,
             };
             collapsed.weights.push(axis.weights(axis.coordinate(quantity)?)?);
@@ -76,7 +76,9 @@ impl MaterialWeights {
             weights.push(match axis.mapping {
                 Mapping::LogShape(_) => alloc::vec![(shape, 1.0)],
                 Mapping::LogRoughness(_) => alloc::vec![(sigma, 1.0)],
-                Mapping::ReflectanceRoot => axis.weights(axis.coordinate(index(axis, point)?)?)?,
+                Mapping::ReflectanceRoot | Mapping::CrossingRoot(_) => {
+                    axis.weights(axis.coordinate(index(axis, point)?)?)?
+                }
                 _ => break,
             });
         }

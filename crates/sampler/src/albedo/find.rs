@@ -222,21 +222,23 @@ impl Tables {
         mut each: impl FnMut(&DielectricAlbedo),
     ) -> Result<InterfaceAlbedos, MaterialError> {
         let dense = eta.max(1.0 / eta);
-        let tables = |side: Side| {
-            self.of_family(Kind::Albedo, masking).filter(move |table| {
-                let reflectance = table.subject.reflectance.as_ref();
-                let here = reflectance.and_then(Reflectance::side) == Some(side);
-                let near = f64::from(f32::EPSILON) * dense;
-                let has = |[low, high]: [f64; 2]| low - near <= dense && dense <= high + near;
-                here && smallest_sigma(table).is_some() && indices(table).is_some_and(has)
-            })
-        };
-        // The first among equals.
-        let thin = tables(Side::Thin).reduce(|a, b| if width(b) > width(a) { b } else { a });
-        let pair = thin.and_then(|thin| {
+        let pair_of = |all| {
+            let tables = |side: Side| {
+                of_family(all, Kind::Albedo, masking).filter(move |table| {
+                    let reflectance = table.subject.reflectance.as_ref();
+                    let here = reflectance.and_then(Reflectance::side) == Some(side);
+                    let near = f64::from(f32::EPSILON) * dense;
+                    let has = |[low, high]: [f64; 2]| low - near <= dense && dense <= high + near;
+                    here && smallest_sigma(table).is_some() && indices(table).is_some_and(has)
+                })
+            };
+            // The first among equals.
+            let thin = tables(Side::Thin).reduce(|a, b| if width(b) > width(a) { b } else { a })?;
             let same = |table: &&Table| table.subject.lobe == thin.subject.lobe;
             Some([thin, tables(Side::Dense).find(same)?])
-        });
+        };
+        // What a fallback holds may be wider, but coarser.
+        let pair = pair_of(self.tables()).or_else(|| pair_of(self.searched()));
         pair.and_then(|pair| InterfaceAlbedos::new(pair, eta, &mut each)).ok_or_else(|| {
             let dielectrics = self.searched().iter().filter(|table| indices(table).is_some());
             let nearest = nearest(dielectrics, [0.3, 2.0, dense], masking);
@@ -266,12 +268,11 @@ impl Tables {
     }
 
     fn albedos(&self, kind: Kind, masking: Masking) -> impl Iterator<Item = &Table> {
-        let of = move |table: &&Table| table.kind == kind && table.subject.masking == Some(masking);
-        self.searched().iter().filter(of)
+        albedos(self.searched(), kind, masking)
     }
 
     fn of_family(&self, kind: Kind, masking: Masking) -> impl Iterator<Item = &Table> {
-        self.albedos(kind, masking).filter(|table| table.subject.lobe.is_family())
+        of_family(self.searched(), kind, masking)
     }
 
     /// The tables of moments of the family, of a kind and masking.
@@ -298,6 +299,15 @@ impl Tables {
             .find_map(|table| read(table, &point))
             .ok_or_else(|| not_covered(tables, masking, [sigma, gamma]))
     }
+}
+
+fn albedos(all: &[Table], kind: Kind, masking: Masking) -> impl Iterator<Item = &Table> {
+    let of = move |table: &&Table| table.kind == kind && table.subject.masking == Some(masking);
+    all.iter().filter(of)
+}
+
+fn of_family(all: &[Table], kind: Kind, masking: Masking) -> impl Iterator<Item = &Table> {
+    albedos(all, kind, masking).filter(|table| table.subject.lobe.is_family())
 }
 
 /// How wide a range of shapes a table covers.

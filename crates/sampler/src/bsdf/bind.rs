@@ -53,6 +53,7 @@ impl Tables {
             lobe: Box::new(key.clone()),
             eta: None,
             masking,
+            nearest: None,
             stand_in: key.round().is_some(),
         })?;
         Ok(self.albedo(round.0, round.1, masking)?)
@@ -76,9 +77,9 @@ impl Tables {
         let (sigma, gamma) =
             round(&key, stand_in).ok_or(BindError::RoundOnly { stand_in: stood_for })?;
         self.dielectric_albedo(sigma, gamma, eta, masking).map_err(|why| match why {
-            MaterialError::DielectricNotCovered { .. } => {
+            MaterialError::DielectricNotCovered { nearest, .. } => {
                 let lobe = Box::new(LobeKey::Upright(LobeSpec::student_t([sigma; 2], gamma)));
-                BindError::NoAlbedo { lobe, eta: Some(eta), masking, stand_in: false }
+                BindError::NoAlbedo { lobe, eta: Some(eta), masking, nearest, stand_in: false }
             }
             why => why.into(),
         })

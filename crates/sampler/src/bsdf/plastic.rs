@@ -36,9 +36,10 @@ use crate::vector::vec3;
 ///
 /// Single scattering needs no table: T and R are integrated when the plastic is made, to 1e-3, and
 /// to 6e-3 for η < 1; to 0.04 and 0.2 where σx is a tenth of σy, or the lobe is tilted. A white
-/// base returns at most 1.003 of the light all the same. The default set has no albedos of rough
-/// coats, so that compensation needs a set baked from a recipe that names the coat, for round lobes
-/// of the family; [`StandIn::Round`] uses them for anisotropic and tilted lobes.
+/// base returns at most 1.003 of the light all the same. Compensation needs albedos of the coat,
+/// which are of round lobes of the family: the [default set](crate::Tables::embedded) has those of common
+/// coats, and a set baked from a recipe has those that it names; [`StandIn::Round`] uses them for
+/// anisotropic and tilted lobes.
 ///
 /// ```
 /// # #[cfg(feature = "embedded")] {
@@ -47,10 +48,11 @@ use crate::vector::vec3;
 /// let tables = Tables::embedded();
 /// let (coat, green) = (tables.student_t(0.3, 2.5)?, [0.1, 0.4, 0.2]);
 /// let single = Plastic::new(coat.clone(), 1.5, green, BsdfSettings::new())?;
-/// // With compensation the error has the lines to bake: then `Tables::from_bytes(&file)`.
 /// let settings = BsdfSettings::new().compensated(Compensation::KullaConty, &tables);
-/// let why = Plastic::new(coat, 1.5, green, settings).unwrap_err();
-/// assert!(why.to_string().contains("gamma = 2.5\nfresnel = { dielectric = 1.5 }"));
+/// let all = Plastic::new(coat.clone(), 1.5, green, settings)?;
+/// // Where a set lacks the coat, the error has the lines to bake: `Tables::from_bytes(&file)`.
+/// let why = Plastic::new(coat, 2.4, green, settings).unwrap_err();
+/// assert!(why.to_string().contains("gamma = 2.5\nfresnel = { dielectric = 2.4 }"));
 /// # }
 /// # Ok::<(), microfacet_sampler::BindError>(())
 /// ```

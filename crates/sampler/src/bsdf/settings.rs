@@ -46,8 +46,9 @@ impl<'a> BsdfSettings<'a> {
 
     /// With a compensation of the light that one bounce loses, by albedos from tables.
     ///
-    /// The default set has those of metals; those of dielectrics and plastics are baked for a
-    /// recipe that names them, whose lines the error of a missing one gives.
+    /// The default set has those of metals, and of [common](Tables::embedded) dielectrics and
+    /// plastics; others are baked for a recipe that names them, whose lines the error of a missing
+    /// one gives.
     #[must_use]
     pub fn compensated(self, compensation: Compensation, tables: &'a Tables) -> Self {
         Self { compensation, tables: Some(tables), ..self }

@@ -417,14 +417,25 @@ fn what_tables_lack_is_said_and_the_lines_that_add_it_are_data() {
     assert!(matches!(metal(settings), Err(BindError::NoAlbedo { stand_in: true, .. })));
     metal(settings.with_stand_in(StandIn::Round)).unwrap();
 
-    // The default set has no dielectrics.
+    // The default set has common dielectrics, seen from either side, and says which.
     let lobe = tables.student_t(0.3, 3.0).unwrap();
-    let glass = Dielectric::new(lobe.clone(), 1.5, settings).unwrap_err();
-    let plastic = Plastic::new(lobe, 1.5, [0.5], settings).unwrap_err();
+    for eta in [1.3, 1.5, 1.7, 1.0 / 1.5] {
+        Dielectric::new(lobe.clone(), eta, settings).unwrap();
+        Plastic::new(lobe.clone(), eta, [0.5], settings).unwrap();
+    }
+    let glass = Dielectric::new(lobe.clone(), 2.4, settings).unwrap_err();
+    let plastic = Plastic::new(lobe, 2.4, [0.5], settings).unwrap_err();
     for why in [glass, plastic] {
         assert!(matches!(why, BindError::NoAlbedo { stand_in: false, .. }));
-        assert!(why.to_string().contains("\nfresnel = { dielectric = 1.5 }\n"), "{why}");
+        let text = why.to_string();
+        assert!(text.contains("\nfresnel = { dielectric = 2.4 }\n"), "{text}");
+        assert!(text.contains("1.3") && text.contains("1.7"), "{text}");
     }
+    let rough = tables.student_t(0.3, 1.8).unwrap();
+    assert!(Dielectric::new(rough, 1.5, settings).is_err());
+    let uncorrelated = settings.with_masking(Masking::Uncorrelated);
+    let lobe = tables.student_t(0.3, 3.0).unwrap();
+    assert!(Dielectric::new(lobe, 1.5, uncorrelated).is_err());
 
     // No table has a key of a user's own lobe.
     struct Own(Ggx);

@@ -27,6 +27,12 @@ pub(crate) trait Coordinate {
         (n < 2 && self.placement() == Placement::Even).then_some("needs at least two nodes")
     }
 
+    /// The t between its first and its last at which parts meet, each of which is interpolated from
+    /// its own nodes.
+    fn knots(&self) -> &'static [f64] {
+        &[]
+    }
+
     /// The number of values along an axis of n nodes.
     fn values(&self, n: usize) -> usize {
         n

@@ -38,8 +38,15 @@ pub fn weights(nodes: &[f64], t: f64, window: usize) -> Vec<(usize, f64)> {
 
 /// The nodes that a polynomial through `window` of them reads anywhere in [from, to].
 pub fn nodes_read(nodes: &[f64], from: f64, to: f64, window: usize) -> &[f64] {
+    &nodes[read(nodes, from, window)[0]..read(nodes, to, window)[1]]
+}
+
+/// The first of the nodes that a polynomial through `window` of them reads at t, and the one after
+/// the last.
+pub(super) fn read(nodes: &[f64], t: f64, window: usize) -> [usize; 2] {
     let window = window.min(nodes.len());
-    &nodes[window_at(nodes, from, window)..window_at(nodes, to, window) + window]
+    let start = window_at(nodes, t, window);
+    [start, start + window]
 }
 
 pub(super) fn is_even(nodes: &[f64]) -> bool {

@@ -2,11 +2,11 @@
 //!
 //! Each coordinate has a file with its formula, its inverse, the spacing of its nodes, the checks
 //! of its parameters, and the fast evaluations that lookups use, which tests compare with the
-//! formula: [`InverseShape`] and [`LogShape`] of γ, [`LogRoughness`] of σ, [`ReflectanceRoot`] of
-//! η, [`HalfTangent`], [`Rational`], [`ViewBlend`] and [`CriticalBlend`] of the elevation of a
-//! view, [`Azimuth`] of its azimuth, [`MirroredRoot`] and [`OddRoot`] of a random number. Baking,
-//! lookups, measurement and export all call them. Interpolation is by Lagrange polynomials
-//! ([`lagrange`]) or by Hermite cells.
+//! formula: [`InverseShape`] and [`LogShape`] of γ, [`LogRoughness`] of σ, [`ReflectanceRoot`] and
+//! [`CrossingRoot`] of η, [`HalfTangent`], [`Rational`], [`ViewBlend`] and [`CriticalBlend`] of the
+//! elevation of a view, [`Azimuth`] of its azimuth, [`MirroredRoot`] and [`OddRoot`] of a random
+//! number. Baking, lookups, measurement and export all call them. Interpolation is by Lagrange
+//! polynomials ([`lagrange`]) or by Hermite cells.
 
 use alloc::format;
 use alloc::string::String;
@@ -22,6 +22,7 @@ mod critical_angle;
 mod crowded;
 pub mod half_tangent;
 pub mod hermite;
+mod interpolation;
 mod inverse_shape;
 pub mod lagrange;
 mod log_roughness;
@@ -35,17 +36,19 @@ pub use azimuth::{Azimuth, PreparedAzimuth};
 pub use coordinate::even_nodes;
 pub use critical_angle::{CriticalBlend, PreparedCritical};
 pub use half_tangent::HalfTangent;
+pub use interpolation::Interpolation;
 pub use inverse_shape::InverseShape;
 pub use log_roughness::LogRoughness;
 pub use log_shape::LogShape;
 pub use random_number::{MirroredRoot, OddRoot};
 pub use rational::Rational;
-pub use refractive_index::ReflectanceRoot;
+pub use refractive_index::{CrossingRoot, ReflectanceRoot};
 pub use view_blend::{FastBlend, FastView, PreparedView, ViewBlend};
 
 pub use random_number::{above_zero, roots};
 
 use coordinate::Coordinate;
+use interpolation::part;
 
 /// How a physical quantity maps to the coordinate along an axis.
 ///
@@ -62,6 +65,8 @@ pub enum Mapping {
     LogRoughness(LogRoughness),
     /// The index of refraction η.
     ReflectanceRoot,
+    /// The index of refraction η, in parts.
+    CrossingRoot(CrossingRoot),
     /// A view, by z = cot θ_v/σ_v, or a slope.
     HalfTangent(HalfTangent),
     /// A view, by z = cot θ_v/σ_v, or a slope.
@@ -80,11 +85,12 @@ pub enum Mapping {
 
 impl Mapping {
     /// One mapping of every kind, with the parameters of baked tables or other valid ones.
-    pub const EVERY: [Self; 11] = [
+    pub const EVERY: [Self; 12] = [
         Self::InverseShape,
         Self::LogShape(LogShape::BAKED),
         Self::LogRoughness(LogRoughness::BAKED),
         Self::ReflectanceRoot,
+        Self::CrossingRoot(CrossingRoot { crowded: true }),
         Self::HalfTangent(HalfTangent { knots: Some([[0.7, 0.6], [0.9, 0.8]]) }),
         Self::Rational(Rational::BAKED),
         Self::ViewBlend(ViewBlend::BAKED),
@@ -101,6 +107,7 @@ impl Mapping {
             Self::LogShape(_) => "log_shape",
             Self::LogRoughness(_) => "log_roughness",
             Self::ReflectanceRoot => "reflectance_root",
+            Self::CrossingRoot(_) => "crossing_root",
             Self::HalfTangent(_) => "half_tangent",
             Self::Rational(_) => "rational",
             Self::ViewBlend(_) => "view_blend",
@@ -126,12 +133,17 @@ impl Mapping {
         self.get().placement().node(i, n)
     }
 
+    fn knots(&self) -> &'static [f64] {
+        self.get().knots()
+    }
+
     fn get(&self) -> &dyn Coordinate {
         match self {
             Self::InverseShape => &InverseShape,
             Self::LogShape(coordinate) => coordinate,
             Self::LogRoughness(coordinate) => coordinate,
             Self::ReflectanceRoot => &ReflectanceRoot,
+            Self::CrossingRoot(coordinate) => coordinate,
             Self::HalfTangent(coordinate) => coordinate,
             Self::Rational(coordinate) => coordinate,
             Self::ViewBlend(coordinate) => coordinate,
@@ -139,37 +151,6 @@ impl Mapping {
             Self::Azimuth(coordinate) => coordinate,
             Self::MirroredRoot => &MirroredRoot,
             Self::OddRoot => &OddRoot,
-        }
-    }
-}
-
-/// How values between nodes are interpolated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-#[non_exhaustive]
-pub enum Interpolation {
-    /// Linear.
-    Linear,
-    /// The cubic Hermite polynomial of the channels `value` and `slope`, the slope being the
-    /// derivative with respect to the node index.
-    Hermite,
-    /// The Lagrange polynomial through the four nearest nodes (fewer if the axis has fewer).
-    Lagrange4,
-    /// The Lagrange polynomial through the six nearest nodes, evenly spaced in the coordinate
-    /// (fewer if the axis has fewer).
-    Lagrange6,
-    /// None: only the nodes themselves are covered.
-    Nodes,
-}
-
-impl Interpolation {
-    /// The number of nodes that an interpolated value depends on; 1 for [`Nodes`](Self::Nodes).
-    pub const fn window(self) -> usize {
-        match self {
-            Self::Linear | Self::Hermite => 2,
-            Self::Lagrange4 => 4,
-            Self::Lagrange6 => lagrange::SIX,
-            Self::Nodes => 1,
         }
     }
 }
@@ -246,6 +227,7 @@ impl Axis {
             Mapping::LogShape(axis) => Some(axis.coordinate(quantity)),
             Mapping::LogRoughness(axis) => Some(axis.coordinate(quantity)),
             Mapping::ReflectanceRoot => Some(ReflectanceRoot.coordinate(quantity)),
+            Mapping::CrossingRoot(axis) => Some(axis.coordinate(quantity)),
             _ => None,
         }
     }
@@ -257,6 +239,7 @@ impl Axis {
             Mapping::LogShape(axis) => Some(axis.quantity(t)),
             Mapping::LogRoughness(axis) => Some(axis.quantity(t)),
             Mapping::ReflectanceRoot => Some(ReflectanceRoot.quantity(t)),
+            Mapping::CrossingRoot(axis) => Some(axis.quantity(t)),
             _ => None,
         }
     }
@@ -281,7 +264,23 @@ impl Axis {
             return Some(alloc::vec![(i, 1.0)]);
         }
         let between = t > first && t < last && self.interpolation != Interpolation::Nodes;
-        between.then(|| lagrange::weights(&self.nodes, t, self.interpolation.window()))
+        between.then(|| {
+            let (before, part) = part(&self.nodes, self.mapping.knots(), t);
+            let weights = lagrange::weights(part, t, self.interpolation.window());
+            weights.into_iter().map(|(i, weight)| (before + i, weight)).collect()
+        })
+    }
+
+    /// The axis of the nodes alone that interpolation reads anywhere in [from, to].
+    #[must_use]
+    pub fn cut(&self, from: f64, to: f64) -> Self {
+        let read = |t: f64| {
+            let (before, part) = part(&self.nodes, self.mapping.knots(), t);
+            let [first, last] = lagrange::read(part, t, self.interpolation.window());
+            [before + first, before + last]
+        };
+        let ([first, _], [_, last]) = (read(from), read(to));
+        Self { nodes: self.nodes[first..last].to_vec(), ..self.clone() }
     }
 
     /// Checks what every reader relies on: finite, strictly ascending nodes within the mapping's
@@ -323,6 +322,8 @@ impl Axis {
 
 #[cfg(test)]
 mod tests {
+    use core::f64::consts::SQRT_2;
+
     use super::coordinate::Placement;
     use super::*;
 
@@ -343,6 +344,7 @@ mod tests {
     #[test]
     fn quantities_are_the_same_again() {
         const INF: f64 = f64::INFINITY;
+        let crossing = |crowded| Mapping::CrossingRoot(CrossingRoot { crowded });
         let [shape, sigma] =
             [Mapping::LogShape(LogShape::BAKED), Mapping::LogRoughness(LogRoughness::BAKED)];
         for (mapping, tolerance, quantities) in [
@@ -350,6 +352,8 @@ mod tests {
             (shape, 1e-14, &[1.5 + 1e-6, 1.501, 2.0, 40.0, 1e9, INF]),
             (sigma, 1e-14, &[1e-8, 1e-4, 0.015, 0.3, 3.0, 1e3]),
             (Mapping::ReflectanceRoot, 1e-13, &[1.0, 1.0001, 1.33, 1.5, 2.4, 40.0, INF]),
+            (crossing(false), 1e-13, &[1.0, 1.0001, 1.33, SQRT_2, 1.5, 2.4, 40.0, INF]),
+            (crossing(true), 1e-13, &[1.0, 1.0001, 1.33, SQRT_2, 1.5, 2.4, 40.0, INF]),
         ] {
             let axis = Axis::new("a", mapping, Interpolation::Linear, Vec::new());
             for &x in quantities {
@@ -415,6 +419,19 @@ mod tests {
         assert_eq!([0.0, 0.6, f64::NAN].map(|t| range.weights(t)), [const { None }; 3]);
         let points = axis(Interpolation::Nodes, &[0.1, 0.2]);
         assert_eq!([0.15, 0.1].map(|t| points.weights(t)), [None, node(0)]);
+        // Of an axis in parts they are those of one part, which may have few.
+        let nodes = even_nodes(0.0, 1.0, 21);
+        let crossing = Mapping::CrossingRoot(CrossingRoot { crowded: true });
+        let parts = Axis::new("eta", crossing, Interpolation::Lagrange6, nodes);
+        let read = |axis: &Axis, t: f64| -> Vec<usize> {
+            axis.weights(t).unwrap().into_iter().map(|(i, _)| i).collect()
+        };
+        assert_eq!((read(&parts, 0.49), read(&parts, 0.5)), ((5..=10).collect(), [10].into()));
+        assert_eq!(read(&parts, 0.51), (10..=15).collect::<Vec<_>>());
+        let cut = parts.cut(0.46, 0.57);
+        assert_eq!(cut.nodes, parts.nodes[5..=15]);
+        assert_eq!(read(&cut, 0.51), (5..=10).collect::<Vec<_>>());
+        assert_eq!(parts.cut(0.51, 0.52).nodes, parts.nodes[10..=15]);
         let one = axis(Interpolation::Lagrange6, &[0.7]);
         assert_eq!([0.7 + 1e-10, 0.71].map(|t| one.weights(t)), [node(0), None]);
     }

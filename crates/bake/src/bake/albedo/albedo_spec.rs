@@ -1,9 +1,10 @@
 //! The specification of albedo tables: the lobe, the reflectance, and the nodes.
 
+use std::f64::consts::SQRT_2;
+
 use microfacet_sampler::Masking;
-use microfacet_tables::axis::lagrange::nodes_read;
 use microfacet_tables::axis::{
-    CriticalBlend, LogRoughness, LogShape, ReflectanceRoot, ViewBlend, even_nodes,
+    CriticalBlend, CrossingRoot, LogRoughness, LogShape, ViewBlend, even_nodes,
 };
 use microfacet_tables::{
     Axis, Interpolation, Interval, Kind, LobeForm, LobeSpec, Mapping, Precision, Reflectance,
@@ -83,10 +84,17 @@ impl AlbedoSpec {
                 vec![Axis::placed("azimuth", Mapping::Azimuth(azimuth), INTERPOLATION, count)]
             }
         };
-        axes.extend(reflectance.indices().map(|Interval { min, max }| {
-            let all = even_nodes(0.0, 1.0, nodes([20, 32, 48]));
-            let [from, to] = [min, max].map(|eta| ReflectanceRoot.coordinate(eta));
-            Axis::new("eta", Mapping::ReflectanceRoot, INTERPOLATION, cut(&all, from, to))
+        let is_heavy = lobe.gamma.min < HEAVY;
+        let is_dense = reflectance.side() == Some(Side::Dense);
+        axes.extend(reflectance.indices().map(|index| {
+            let count = nodes([20, 32, 48]);
+            // From inside, where the kinks along the view cross, parts share a node.
+            let is_crossed = is_dense && index.min < SQRT_2 && SQRT_2 < index.max;
+            let (mapping, count) = match is_crossed {
+                true => (Mapping::CrossingRoot(CrossingRoot { crowded: is_heavy }), count | 1),
+                false => (Mapping::ReflectanceRoot, count),
+            };
+            cut("eta", mapping, &even_nodes(0.0, 1.0, count), index.into())
         }));
         let (view, views) = match lobe.is_family() {
             true if level >= CLOSE_FROM => (ViewBlend::CLOSE, nodes([20, 33, 58])),
@@ -95,15 +103,16 @@ impl AlbedoSpec {
             // until the error is met.
             false => (ViewBlend::BAKED.of_shape(tail(&lobe)), [17, 33, 65][quality]),
         };
-        axes.push(if reflectance.side() == Some(Side::Dense) {
+        axes.push(if is_dense {
             // E changes fast where total reflection begins, and transmission where upright facets
             // begin to transmit: parts share a node there.
-            let is_heavy = lobe.gamma.min < HEAVY;
-            let is_single = reflectance.indices().is_some_and(Interval::is_point);
-            let blend = match is_heavy && is_single {
+            let is_range = reflectance.indices().is_some_and(|index| !index.is_point());
+            let blend = match is_heavy {
                 true => CriticalBlend::UPRIGHT,
                 false => CriticalBlend::BAKED,
             };
+            let soft = if is_range { CriticalBlend::SOFT } else { 0.0 };
+            let blend = CriticalBlend { soft, ..blend };
             let parts = blend.parts();
             let count = parts * (2 * (views - 1)).div_ceil(parts) + 1;
             Axis::placed("view", Mapping::CriticalBlend(blend), INTERPOLATION, count)
@@ -254,36 +263,27 @@ fn is_of_view(axis: &Axis) -> bool {
 /// The axes of γ and σ for round lobes.
 fn materials(lobe: &AlbedoLobe, shapes: usize, roughnesses: usize) -> Vec<Axis> {
     let (gamma, sigma) = (lobe.gamma, lobe.roughness.x());
-    let shape = |gamma: f64| LogShape::BAKED.coordinate(gamma);
-    let roughness = |sigma: f64| LogRoughness::BAKED.coordinate(sigma);
-    let shapes = even_nodes(shape(f64::INFINITY), shape(GAMMA_MIN), shapes);
-    let roughnesses = even_nodes(roughness(SIGMA_MIN), roughness(SIGMA_MAX), roughnesses);
+    let (log_shape, log_rough) = (LogShape::BAKED, LogRoughness::BAKED);
+    let ends = [f64::INFINITY, GAMMA_MIN].map(|gamma| log_shape.coordinate(gamma));
+    let shapes = even_nodes(ends[0], ends[1], shapes);
+    let ends = [SIGMA_MIN, SIGMA_MAX].map(|sigma| log_rough.coordinate(sigma));
+    let roughnesses = even_nodes(ends[0], ends[1], roughnesses);
     // Surfaces smoother than the first node count as mirrors.
     let [from, to] = if sigma.min < SIGMA_MIN {
         [SIGMA_MIN, sigma.max.max(2.0 * SIGMA_MIN)]
     } else {
         [sigma.min, sigma.max]
     };
-    let axis = |name: &str, mapping, nodes| Axis::new(name, mapping, INTERPOLATION, nodes);
     vec![
-        axis(
-            "gamma",
-            Mapping::LogShape(LogShape::BAKED),
-            cut(&shapes, shape(gamma.max), shape(gamma.min)),
-        ),
-        axis(
-            "sigma",
-            Mapping::LogRoughness(LogRoughness::BAKED),
-            cut(&roughnesses, roughness(from), roughness(to)),
-        ),
+        cut("gamma", Mapping::LogShape(log_shape), &shapes, [gamma.max, gamma.min]),
+        cut("sigma", Mapping::LogRoughness(log_rough), &roughnesses, [from, to]),
     ]
 }
 
-/// The nodes that the polynomial reads anywhere in [from, to]; a single value is a node itself.
-fn cut(nodes: &[f64], from: f64, to: f64) -> Vec<f64> {
-    if from == to {
-        vec![from]
-    } else {
-        nodes_read(nodes, from, to, INTERPOLATION.window()).to_vec()
-    }
+/// The axis of the nodes that the polynomial reads anywhere between two quantities; a single value
+/// is a node itself.
+fn cut(name: &str, mapping: Mapping, nodes: &[f64], ends: [f64; 2]) -> Axis {
+    let all = Axis::new(name, mapping, INTERPOLATION, nodes.to_vec());
+    let [from, to] = ends.map(|x| all.coordinate(x).expect("an axis of a quantity"));
+    if from == to { Axis { nodes: vec![from], ..all } } else { all.cut(from, to) }
 }

@@ -7,6 +7,7 @@
 //! rounding rather than to the interpolation error.
 
 mod albedo_spec;
+mod coarse;
 mod integrand;
 mod lobe;
 
@@ -26,6 +27,7 @@ use microfacet_tables::{
 use crate::progress::Stage;
 
 pub use albedo_spec::AlbedoSpec;
+pub use coarse::CoarseNodes;
 pub use integrand::{Integrand, weights};
 pub use lobe::{AlbedoLobe, Model, Models};
 pub(crate) use lobe::{area_ratio, ellipsoid, stated};
@@ -58,7 +60,7 @@ impl Site {
             match axis.mapping {
                 Mapping::LogShape(_) => site.gamma = quantity(),
                 Mapping::LogRoughness(_) => site.sigma = quantity(),
-                Mapping::ReflectanceRoot => site.eta = quantity(),
+                Mapping::ReflectanceRoot | Mapping::CrossingRoot(_) => site.eta = quantity(),
                 Mapping::Azimuth(azimuth) => {
                     let azimuth = azimuth.prepare(axis.len());
                     let [c, s] = azimuth.direction(t);

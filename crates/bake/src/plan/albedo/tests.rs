@@ -38,7 +38,8 @@ fn by_comparison(
                     Some(need) if need.maskings.contains(&masking) => {}
                     Some(need) => need.maskings.push(masking),
                     None => {
-                        needs.push(RequiredAlbedo { lobe, reflectance, maskings: vec![masking] });
+                        let maskings = vec![masking];
+                        needs.push(RequiredAlbedo { lobe, reflectance, maskings, coarse: false });
                     }
                 }
             }
@@ -129,4 +130,25 @@ fn what_is_planned_is_what_a_comparison_of_all_finds() {
         }
     }
     assert!(groups > 100, "{groups}");
+}
+
+/// A set of a scene carries the tables that its materials ask for, glass or not, and none of those
+/// that the default set has for renderers that bake nothing.
+#[test]
+fn no_scene_has_the_tables_of_common_glass() {
+    let glass =
+        "[[material]]\nname = \"a\"\nsigma = 0.3\ngamma = 3\nfresnel = { dielectric = 1.5 }\n";
+    for (recipe, sides) in [(glass, 2), (&glass.replace("{ dielectric = 1.5 }", "\"mirror\""), 0)] {
+        let scene = Scene::from_recipe_str(recipe).unwrap();
+        for embedded_albedo in [false, true] {
+            let options = Options { embedded_albedo, ..Options::default() };
+            let (planned, _) = wanted(&parts(&scene), options).unwrap();
+            let of_glass = planned.iter().filter(|need| need.reflectance.side().is_some());
+            assert_eq!(of_glass.count(), sides, "{recipe}");
+            assert!(planned.iter().all(|need| !need.coarse));
+        }
+    }
+    let all =
+        RequiredAlbedo::common_glass().map(|need| need.spec(Quality::Default, Precision::F32));
+    assert!(all.into_iter().all(|spec| spec.unwrap().precision == Precision::U16));
 }

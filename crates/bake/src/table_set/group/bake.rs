@@ -60,7 +60,9 @@ impl TableGroup {
             }
             (None, Self::Albedo(need)) => {
                 let spec = need.spec(level, Precision::F32)?;
-                let sets = albedo_tables(&spec, precisions, &job.progress)?;
+                let stored: Vec<Precision> =
+                    precisions.iter().map(|&asked| need.stored(asked)).collect();
+                let sets = albedo_tables(&spec, &stored, &job.progress)?;
                 self.finish(&keys, sets, job)
             }
         };
