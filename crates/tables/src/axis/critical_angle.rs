@@ -71,6 +71,12 @@ impl CriticalBlend {
     /// smaller errors.
     pub const UPRIGHT: Self = Self { kink: 0.0, sharp: 0.1, between: 0.9, ..Self::BAKED };
 
+    /// The parameters for tables of one shape, which need no γ: κ of the shape is their `scale`.
+    #[must_use]
+    pub fn of_shape(&self, gamma: f64) -> Self {
+        Self { scale: kappa(self.scale, self.heavy, gamma), heavy: 0.0, ..*self }
+    }
+
     /// The number of parts: two or three.
     pub fn parts(&self) -> usize {
         parts(self.between)

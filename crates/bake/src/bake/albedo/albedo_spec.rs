@@ -69,8 +69,16 @@ impl AlbedoSpec {
         // All numbers of nodes were found by measuring. The interpolating polynomial reads six.
         let nodes = |counts| level.nodes(counts, 6);
         let quality = level.quality() as usize;
+        let index = reflectance.indices().map(|Interval { min, max }| {
+            let all = even_nodes(0.0, 1.0, nodes([20, 32, 48]));
+            let [from, to] = [min, max].map(|eta| ReflectanceRoot.coordinate(eta));
+            Axis::new("eta", Mapping::ReflectanceRoot, INTERPOLATION, cut(&all, from, to))
+        });
         let mut axes = match azimuth(&lobe)? {
-            None => materials(&lobe, nodes([16, 24, 44]), nodes([22, 38, 68])),
+            None => {
+                let all = materials(&lobe, nodes([16, 24, 44]), nodes([22, 38, 68]));
+                all.into_iter().chain(index).collect()
+            }
             Some(azimuth) => {
                 // 2ᵏ + 1 nodes in a quarter of the azimuths, before refinement.
                 let quarter = [5, 9, 17][quality];
@@ -80,14 +88,11 @@ impl AlbedoSpec {
                     LobeForm::Ellipsoid => 4 * (quarter - 1),
                     LobeForm::Family | LobeForm::StudentT => quarter,
                 };
-                vec![Axis::placed("azimuth", Mapping::Azimuth(azimuth), INTERPOLATION, count)]
+                let around =
+                    Axis::placed("azimuth", Mapping::Azimuth(azimuth), INTERPOLATION, count);
+                index.into_iter().chain([around]).collect::<Vec<_>>()
             }
         };
-        axes.extend(reflectance.indices().map(|Interval { min, max }| {
-            let all = even_nodes(0.0, 1.0, nodes([20, 32, 48]));
-            let [from, to] = [min, max].map(|eta| ReflectanceRoot.coordinate(eta));
-            Axis::new("eta", Mapping::ReflectanceRoot, INTERPOLATION, cut(&all, from, to))
-        }));
         let (view, views) = match lobe.is_family() {
             true if level >= CLOSE_FROM => (ViewBlend::CLOSE, nodes([20, 33, 58])),
             true => (ViewBlend::BAKED, nodes([20, 33, 58])),
@@ -104,6 +109,7 @@ impl AlbedoSpec {
                 true => CriticalBlend::UPRIGHT,
                 false => CriticalBlend::BAKED,
             };
+            let blend = if lobe.is_family() { blend } else { blend.of_shape(tail(&lobe)) };
             let parts = blend.parts();
             let count = parts * (2 * (views - 1)).div_ceil(parts) + 1;
             Axis::placed("view", Mapping::CriticalBlend(blend), INTERPOLATION, count)

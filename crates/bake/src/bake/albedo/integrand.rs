@@ -67,14 +67,23 @@ fn pane(side: Side, model: &Model<'_>, site: &Site) -> Result<Albedo<CHANNELS>, 
     let pane = Dielectric::new(eta)?;
     // The cosine at which total reflection begins.
     let kink = if eta < 1.0 { ((1.0 - eta) * (1.0 + eta)).sqrt() } else { 0.0 };
-    let (model, sigma) = model.round(site)?;
     let reflectance = |cos: f64| [pane.reflectance(cos)];
-    let reflected = if kink > 0.0 {
-        model.reflection_with_kink(sigma, site.cos, kink, reflectance)?
-    } else {
-        model.reflection(sigma, site.cos, reflectance)?
+    let [reflected, transmitted] = match model.refracting(site)? {
+        (model, [sigma, y]) if sigma == y => {
+            let reflected = if kink > 0.0 {
+                model.reflection_with_kink(sigma, site.cos, kink, reflectance)?
+            } else {
+                model.reflection(sigma, site.cos, reflectance)?
+            };
+            [reflected, model.transmission(sigma, site.cos, pane)?]
+        }
+        (model, sigma) => {
+            let Site { cos, phi, .. } = *site;
+            let reflected =
+                model.reflection_anisotropic_with_kink(sigma, cos, phi, kink, reflectance)?;
+            [reflected, model.transmission_anisotropic(sigma, cos, phi, pane)?]
+        }
     };
-    let transmitted = model.transmission(sigma, site.cos, pane)?;
     let both = |r: [f64; 1], t: [f64; 1]| [r[0], t[0], 0.0];
     Ok(Albedo {
         uncorrelated: both(reflected.uncorrelated, transmitted.uncorrelated),
