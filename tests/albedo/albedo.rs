@@ -60,6 +60,7 @@ fn those_who_ask_get_the_form_they_name() {
         lobe,
         reflectance: Reflectance::Mirror,
         maskings: maskings.into(),
+        coarse: false,
     };
     // The anisotropic material needs the albedo of its own lobe, not that of an isotropic stand-in.
     let brushed = AlbedoLobe::student_t([0.6, 0.15], 2.0);

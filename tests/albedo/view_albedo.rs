@@ -327,7 +327,7 @@ fn other_distributions_have_an_albedo_over_the_cosine() {
         assert!((f64::from(albedo.albedo(v)) - want).abs() < 3e-3, "{cos}: {want}");
     }
     let why = set.material_dielectric_albedo("paint", 1.5).unwrap_err().to_string();
-    assert!(why.contains("only round Student-t lobes refract"), "{why}");
+    assert!(why.contains("only upright Student-t lobes refract"), "{why}");
 }
 
 #[test]

@@ -5,6 +5,7 @@ mod common;
 #[path = "../common/sets.rs"]
 mod sets;
 
+mod brushed_glass;
 mod bsdf;
 mod classic;
 mod closure;

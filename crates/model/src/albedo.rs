@@ -17,11 +17,12 @@
 
 mod average;
 mod round;
+mod sectors;
 mod skewed;
 
-use core::f64::consts::{FRAC_PI_2, PI};
+use core::f64::consts::PI;
 
-use crate::converge::{Albedo, Both, CUT, RULES, add, add_place, converge};
+use crate::converge::{Albedo, Both, CUT, RULES, add_place, converge};
 use crate::error::{ParameterError, check_cosine};
 use crate::panels::{End, Gauss};
 use crate::shape::Shape;
@@ -34,8 +35,6 @@ const LARGEST_RAPIDITY: f64 = 340.0;
 /// Widest panel along a ray, in the asinh slope w; the lobe's own singularities are at ±iπ/(2√s),
 /// 1.1 or more away.
 pub(crate) const PANEL: f64 = 1.5;
-/// Widest panel of φ.
-const SECTOR: f64 = 1.6;
 /// Largest share of the tolerance that a layer along the rim may hold without being resolved, an
 /// upper bound of the error: smooth surfaces take fewer points.
 const THIN: f64 = 0.05;
@@ -66,16 +65,14 @@ pub(crate) struct View {
     pub(crate) cos: f64,
     pub(crate) sin: f64,
     /// Azimuth in the frame of the principal axes.
-    cos_phi: f64,
-    sin_phi: f64,
-    sigma: [f64; 2],
+    pub(crate) cos_phi: f64,
+    pub(crate) sin_phi: f64,
+    pub(crate) sigma: [f64; 2],
     /// G1(v)/cos θ.
     pub(crate) scale: f64,
     pub(crate) g1: f64,
     /// Smaller σ over larger.
-    aspect: f64,
-    /// Azimuth of v in unit space.
-    phi_0: f64,
+    pub(crate) aspect: f64,
     /// Width of the turn of R(φ) at right angles to v.
     turn: f64,
     /// Unit slope of the m that reflects v to n, where Λ(l) has a branch point: azimuth and radius.
@@ -217,6 +214,23 @@ impl AlbedoIntegrator {
         Ok(self.converged(tolerance, &view, weight))
     }
 
+    /// [`reflection_with_kink`](Self::reflection_with_kink) for roughness σx, σy > 0 and a view at
+    /// azimuth φ (radians from the x axis).
+    ///
+    /// # Errors
+    /// As [`reflection_anisotropic`](Self::reflection_anisotropic).
+    pub fn reflection_anisotropic_with_kink<const N: usize>(
+        &self,
+        sigma: [f64; 2],
+        cos_theta: f64,
+        phi: f64,
+        kink: f64,
+        weight: impl Fn(f64) -> [f64; N],
+    ) -> Result<Albedo<N>, ParameterError> {
+        let view = View { kink, ..self.view(sigma, cos_theta, phi)? };
+        Ok(self.converged(self.tolerance, &view, weight))
+    }
+
     /// The albedos of one view at the first order that is accurate enough, or else the last.
     fn converged<const N: usize>(
         &self,
@@ -257,7 +271,6 @@ impl AlbedoIntegrator {
             if rho == 0.0 { 0.0 } else { self.shape.excess(self.shape.asinh_slope(cos / rho)) };
         let area = cos + rho * excess;
         let [sx, sy] = sigma;
-        let phi_0 = libm::atan2(sy * sin_phi, sx * cos_phi);
         let half = sin / (1.0 + cos);
         let (x, y) = (cos_phi / sx, sin_phi / sy);
         let phi_normal = libm::atan2(y, x) + PI;
@@ -271,7 +284,6 @@ impl AlbedoIntegrator {
             scale: 1.0 / area,
             g1: cos / area,
             aspect: sx.min(sy) / sx.max(sy),
-            phi_0,
             turn: cos / (sin * sx.max(sy).max(1.0)),
             phi_normal,
             r_normal,
@@ -304,49 +316,22 @@ impl AlbedoIntegrator {
         view: &View,
         weight: &impl Fn(f64) -> [f64; N],
     ) -> Both<N> {
-        let fold = if view.aspect == 1.0 { 2.0 } else { 1.0 };
-        view.over_sectors(rule, self.sectors(view), fold, |phi| self.ray(rule, view, phi, weight))
+        let sectors = view.sectors(&self.ends(view));
+        view.over_sectors(rule, &sectors, |phi| self.ray(rule, view, phi, weight))
     }
 
-    /// The intervals of φ with the scales of variation at their ends; half a turn where the other
-    /// half is the same.
-    fn sectors(&self, view: &View) -> Vec<(End, End)> {
-        // b(φ) vanishes a right angle from φ₀; there R(φ) turns from the near rim to the far one.
-        let turn = |at: f64| End { at, scale: view.turn.max(1e-9) };
+    /// The azimuths of slope at which rays change, as of [`View::sectors`].
+    fn ends(&self, view: &View) -> Vec<End> {
         let scale = if view.branch { 0.05 * view.aspect } else { f64::INFINITY };
-        let normal = End { at: view.phi_normal, scale };
-        let phi_0 = view.phi_0;
-        if view.aspect == 1.0 {
-            let right = turn(phi_0 + FRAC_PI_2);
-            if view.kink == 0.0 {
-                return vec![(End::plain(phi_0), right), (right, normal)];
-            }
-            let conic = self.conic_sectors(view.cos, view.sin, view.kink, right, normal);
-            let (first, tangent) = (End::plain(phi_0), conic[0].0);
-            let before = if view.cos < view.kink {
-                vec![(first, right), (right, tangent)]
-            } else {
-                vec![(first, tangent)]
-            };
-            return [before, conic].concat();
+        let towards = End { at: PI, scale };
+        let right = view.right();
+        if view.kink == 0.0 {
+            return vec![End::plain(0.0), right, towards];
         }
-        // At the minor axis of the roughness ellipse its radius changes within an angle of the
-        // aspect.
-        let minor = if view.sigma[0] < view.sigma[1] { 0.0 } else { FRAC_PI_2 };
-        let narrow = |at: f64| End { at, scale: view.aspect };
-        let mut ends = [
-            turn(phi_0 + FRAC_PI_2),
-            turn(phi_0 - FRAC_PI_2),
-            normal,
-            narrow(minor),
-            narrow(minor + PI),
-        ];
-        for end in &mut ends {
-            end.at -= 2.0 * PI * libm::floor(end.at / (2.0 * PI));
-        }
-        ends.sort_by(|a, b| a.at.total_cmp(&b.at));
-        let again = End { at: ends[0].at + 2.0 * PI, ..ends[0] };
-        (0..5).map(|i| (ends[i], *ends.get(i + 1).unwrap_or(&again))).collect()
+        let conic = self.conic_ends(view.cos, view.sin, view.kink, right);
+        // Below the kink R(φ) turns before rays meet the cone.
+        let turn = (view.cos < view.kink).then_some(right);
+        [End::plain(0.0)].into_iter().chain(turn).chain(conic).chain([towards]).collect()
     }
 
     /// The integral along one ray of slopes from m = n to the rim.
@@ -451,85 +436,5 @@ impl AlbedoIntegrator {
             }
         }
         sum
-    }
-
-    /// The intervals of φ, on the side towards the view, in which rays from m = n may meet the cone
-    /// v·m = `kink`. They run from `right`, at right angles to the view, or else from the cone's
-    /// tangent, to `towards`.
-    pub(crate) fn conic_sectors(
-        &self,
-        cos: f64,
-        sin: f64,
-        kink: f64,
-        right: End,
-        towards: End,
-    ) -> Vec<(End, End)> {
-        // Seen from m = n, the near side of the cone turns within this angle of the right angle.
-        let across = (kink - cos) * (kink + cos);
-        let angle = (libm::fabs(across).sqrt() / sin).min(1.0);
-        let first = if across <= 0.0 {
-            End { at: right.at, scale: right.scale.min(angle.max(1e-6)) }
-        } else {
-            // Rays meet the cone twice on one side of its tangent, and not at all on the other.
-            End { at: right.at + libm::asin(angle), scale: (0.3 * angle).max(1e-6) }
-        };
-        if sin <= kink {
-            return vec![(first, towards)];
-        }
-        // Near this asymptote rays meet the cone ever further out, where heavy tails still have
-        // mass: as the power 2γ−3 of the angle.
-        let scale = libm::exp(-14.0 / (2.0 * self.shape.gamma() - 2.0));
-        let asymptote = End { at: right.at + libm::asin(kink / sin), scale };
-        vec![(first, asymptote), (asymptote, towards)]
-    }
-
-    /// Where a ray meets the cone v·m = `kink`, in w, ascending: the roots of
-    /// (cos θ − r b)² = kink² (1 + a r²).
-    pub(crate) fn conic(
-        &self,
-        cos: f64,
-        kink: f64,
-        a: f64,
-        b: f64,
-        last: f64,
-        scale: f64,
-    ) -> Vec<End> {
-        if kink == 0.0 {
-            return Vec::new();
-        }
-        let square = kink * kink;
-        let (p, q) = (b * b - square * a, b * cos);
-        let rest = (cos - kink) * (cos + kink);
-        let root = square * (b * b + a * rest);
-        if root < 0.0 {
-            return Vec::new();
-        }
-        // The two roots without cancellation.
-        let sum = q + root.sqrt().copysign(q);
-        let facing = |r: &f64| *r > 0.0 && r.is_finite() && cos - r * b > 0.0;
-        let roots = [sum / p, rest / sum].into_iter().filter(facing);
-        let mut ends: Vec<End> = roots
-            .map(|r| End { at: self.shape.asinh_slope(r), scale })
-            .filter(|end| end.at > 0.0 && end.at < last)
-            .collect();
-        ends.sort_by(|x, y| x.at.total_cmp(&y.at));
-        ends
-    }
-}
-
-impl View {
-    /// `fold`/π G1(v)/cos θ times the integral over sectors of φ of the integrals along rays.
-    pub(crate) fn over_sectors<const N: usize>(
-        &self,
-        rule: &Gauss,
-        sectors: Vec<(End, End)>,
-        fold: f64,
-        ray: impl Fn(f64) -> Both<N>,
-    ) -> Both<N> {
-        let mut sum = [[0.0; N]; 2];
-        for (low, high) in sectors {
-            rule.graded(low, high, SECTOR, |phi, jacobian| add(&mut sum, jacobian, &ray(phi)));
-        }
-        sum.map(|form| form.map(|x| x * fold * self.scale / PI))
     }
 }

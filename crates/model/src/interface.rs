@@ -31,6 +31,30 @@ impl AlbedoIntegrator {
         Ok(both(&reflected, &self.transmission(sigma, cos_theta, dielectric)?))
     }
 
+    /// [`interface`](Self::interface) for roughness σx, σy and a view at azimuth φ (radians from the
+    /// x axis). Where σx ≠ σy, both must be positive.
+    ///
+    /// # Errors
+    /// As [`reflection_anisotropic`](Self::reflection_anisotropic).
+    pub fn interface_anisotropic(
+        &self,
+        sigma: [f64; 2],
+        cos_theta: f64,
+        phi: f64,
+        dielectric: Dielectric,
+    ) -> Result<Albedo<2>, ParameterError> {
+        let [x, y] = sigma;
+        if x == y {
+            return self.interface(x, cos_theta, dielectric);
+        }
+        let weight = |cos: f64| [dielectric.reflectance(cos)];
+        let kink = dielectric.kink();
+        let reflected =
+            self.reflection_anisotropic_with_kink(sigma, cos_theta, phi, kink, weight)?;
+        let transmitted = self.transmission_anisotropic(sigma, cos_theta, phi, dielectric)?;
+        Ok(both(&reflected, &transmitted))
+    }
+
     /// Cosine-weighted averages 2∫₀¹ … μ dμ of both shares of [`interface`](Self::interface).
     ///
     /// What leaves the denser side follows from what enters it, by reciprocity: the averages of

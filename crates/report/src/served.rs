@@ -153,7 +153,7 @@ fn tables_of<'a>(
     entry: &'a MaterialEntry,
 ) -> impl Iterator<Item = &'a Table> + 'a {
     let own = entry.lobe.tabulated();
-    // Visible normals and refraction are tabulated for the round lobe.
+    // Visible normals are tabulated for the round lobe, and refraction for either.
     let round = entry.lobe.round();
     let reflectances: Vec<Reflectance> =
         entry.fresnel.as_ref().map_or(vec![Reflectance::Mirror], Reflectance::tabulated);
@@ -161,10 +161,12 @@ fn tables_of<'a>(
         let same = !kind.is_albedo()
             || (subject.masking == Some(entry.masking())
                 && subject.reflectance.as_ref().is_some_and(|of| reads_of(of, &reflectances)));
-        let of_round =
-            !kind.is_albedo() || subject.reflectance.is_some_and(|of| of.side().is_some());
-        let lobe = if of_round && own.distribution.is_none() { &round } else { &own };
-        same && !entry.lobe.is_smooth() && subject.lobe.contains(lobe)
+        let refracts = subject.reflectance.is_some_and(|of| of.side().is_some());
+        let is_own = subject.lobe.contains(&own);
+        let of_round = (!kind.is_albedo() || refracts) && own.distribution.is_none();
+        let is_read =
+            if of_round { subject.lobe.contains(&round) || (refracts && is_own) } else { is_own };
+        same && !entry.lobe.is_smooth() && is_read
     };
     set.tables().iter().filter(reads)
 }

@@ -57,8 +57,8 @@ pub enum BindError {
         /// Whether the round lobe of √(σx σy) could stand in.
         stand_in: bool,
     },
-    /// A dielectric or plastic whose lobe is not round: albedos of dielectrics are tabulated for
-    /// round lobes of the family alone.
+    /// A dielectric or plastic whose lobe is tilted or outside the family: albedos of dielectrics
+    /// are tabulated for upright lobes of the family alone.
     RoundOnly {
         /// Whether the round lobe of √(σx σy) could stand in.
         stand_in: bool,
@@ -136,7 +136,7 @@ impl fmt::Display for BindError {
                 };
                 write!(
                     f,
-                    "tables hold albedos of dielectrics for round lobes of the family alone; {cure}"
+                    "tables hold albedos of dielectrics for upright lobes of the family alone; {cure}"
                 )
             }
             Self::Material(why) => why.fmt(f),
@@ -149,7 +149,7 @@ impl fmt::Display for BindError {
             Self::OtherDistribution { name, distribution } => write!(
                 f,
                 "material \"{name}\" is of the kind {distribution}, which has no dielectric albedo of \
-                 its own; only round Student-t lobes refract"
+                 its own; only upright Student-t lobes refract"
             ),
             Self::NoTable(name) => {
                 write!(f, "table `{name}` is missing from this set; bake it again")

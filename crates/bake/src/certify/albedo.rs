@@ -15,7 +15,7 @@ use microfacet_tables::{
 use super::certificate::round_up;
 use super::climb::{self, At, climbed};
 use super::points::{Point, crease, edges, interior, middles, of_averages, smooth};
-use crate::bake::albedo::{AlbedoError, AlbedoSpec, CHANNELS, Integrand, Models, Site, weights};
+use crate::bake::albedo::{AlbedoError, AlbedoSpec, CHANNELS, Integrand, Models, Site};
 use crate::progress::Stage;
 
 /// Accuracy of the model's values that tables are compared with, as a multiple of that of a node.
@@ -32,7 +32,8 @@ pub struct Reference {
     point: Point,
     v: Vec3,
     exact: Albedo<CHANNELS>,
-    /// |E − E of the isotropic stand-in|, if there is one, by form of masking.
+    /// How far off E of the isotropic stand-in is, or the worse of a dielectric's shares, if there
+    /// is one, by form of masking.
     shortcut: Option<[f64; 2]>,
 }
 
@@ -90,10 +91,15 @@ fn references(
     let gammas = points.iter().map(|point| point.site.gamma);
     // A round lobe of the family stands in for lobes of the family that are not round.
     let has_stand_in = with_stand_in
-        && spec.reflectance == Reflectance::Mirror
+        && !matches!(spec.reflectance, Reflectance::Conductor { .. })
         && matches!(spec.lobe.form(), LobeForm::StudentT | LobeForm::Ellipsoid);
-    let stand_in = has_stand_in.then(|| spec.lobe.round_sigma());
-    Models::with(&spec.lobe, gammas, tolerance, |models| {
+    let round = {
+        let (sigma, gamma) = (spec.lobe.round_sigma(), spec.lobe.gamma.min);
+        Site { sigma, gamma, ..Site::new(&[], &[]) }
+    };
+    let stand_ins = has_stand_in.then_some(round.gamma);
+    let round_lobe = spec.lobe.round();
+    let prepared = |models: &Models<'_>, stand_ins: &Models<'_>| {
         let one = |point: &Point| {
             let site = &point.site;
             let model = models.at(site);
@@ -101,14 +107,21 @@ fn references(
             let phi = if v.z < 1.0 { libm::atan2(v.y.into(), v.x.into()) } else { site.phi };
             let site = Site { cos: v.z.into(), phi, ..*site };
             let exact = integrand.at(model, &site)?;
-            let round = stand_in
-                .map(|sigma| model.stand_in(sigma, site.cos, weights))
-                .transpose()?
-                .flatten();
+            let stand_in = || {
+                let site = Site { cos: site.cos, eta: site.eta, ..round };
+                integrand.at(stand_ins.at(&site), &site)
+            };
+            let round = has_stand_in.then(stand_in).transpose()?;
             let off = |round: Albedo<CHANNELS>| {
-                let total =
-                    |albedo: &Albedo<CHANNELS>, form| albedo.of(form)[..2].iter().sum::<f64>();
-                Masking::ALL.map(|form| (total(&round, form) - total(&exact, form)).abs())
+                Masking::ALL.map(|form| {
+                    let [round, exact] = [&round, &exact].map(|albedo| albedo.of(form));
+                    let off = [0, 1].map(|i| round[i] - exact[i]);
+                    match spec.reflectance {
+                        // E = scale + bias.
+                        Reflectance::Mirror => (off[0] + off[1]).abs(),
+                        _ => off[0].abs().max(off[1].abs()),
+                    }
+                })
             };
             stage.step();
             let mut point = point.clone();
@@ -116,6 +129,9 @@ fn references(
             Ok(Reference { point, v, exact, shortcut: round.map(off) })
         };
         points.par_iter().map(one).collect()
+    };
+    Models::with(&spec.lobe, gammas, tolerance, |models| {
+        Models::with(&round_lobe, stand_ins, tolerance, |stand_ins| prepared(models, stand_ins))
     })
 }
 

@@ -359,16 +359,28 @@ pub fn edges(spec: &AlbedoSpec) -> Vec<Point> {
 /// on a chessboard, an F82 error of 8.5e-4 at σ = (0.05, 0.4), γ = 1.6 was certified as 8.13e-4.
 pub fn middles(spec: &AlbedoSpec) -> Vec<Point> {
     let ranges = ranges(spec);
-    let [azimuth, view] = &ranges[..] else { return Vec::new() };
-    let views = |&phi: &f64| view.cells.iter().map(move |&t| point(spec, &[phi], View::At(t)));
+    let Some([before @ .., azimuth, view]) = around(spec, &ranges) else { return Vec::new() };
+    let before: Vec<f64> = before.iter().map(|range| range.ends[0]).collect();
+    let views = |&phi: &f64| {
+        let material = [&before[..], &[phi]].concat();
+        view.cells.iter().map(move |&t| point(spec, &material, View::At(t)))
+    };
     azimuth.cells.iter().flat_map(views).collect()
+}
+
+/// The ranges of a lobe that has an axis of azimuths, which is the last but one.
+fn around<'a>(spec: &AlbedoSpec, ranges: &'a [Range]) -> Option<&'a [Range]> {
+    let is_azimuth = |axis: &Axis| matches!(axis.mapping, Mapping::Azimuth(_));
+    spec.axes.iter().any(is_azimuth).then_some(ranges)
 }
 
 /// Number of the points of [`middles`].
 pub fn middle_count(spec: &AlbedoSpec) -> usize {
     let ranges = ranges(spec);
-    let [azimuth, view] = &ranges[..] else { return 0 };
-    azimuth.cells.len() * view.cells.len()
+    match around(spec, &ranges) {
+        Some([.., azimuth, view]) => azimuth.cells.len() * view.cells.len(),
+        _ => 0,
+    }
 }
 
 /// The materials at which averages of the family are measured: all combinations of ends and middles

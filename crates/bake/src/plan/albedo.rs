@@ -297,7 +297,7 @@ fn wants(
 /// The reflectances whose tables a material gets if its albedo is baked: the moments, and its exact
 /// one.
 pub(super) fn reflectances(material: &Material) -> impl Iterator<Item = Reflectance> {
-    // The model has refraction for lobes of the family only.
+    // The model has refraction for upright lobes of the family only.
     let refracts = matches!(material.lobe.form(), LobeForm::Family | LobeForm::StudentT);
     let exact = material.fresnel.iter().flat_map(Reflectance::tabulated);
     let exact =
@@ -305,9 +305,10 @@ pub(super) fn reflectances(material: &Material) -> impl Iterator<Item = Reflecta
     std::iter::once(Reflectance::Mirror).chain(exact)
 }
 
-/// The lobe that a table of a material's albedo is of: with refraction it is a round one.
+/// The lobe that a table of a material's albedo is of: over a range of indices it is a round one.
 pub(super) fn tabulated(lobe: &AlbedoLobe, reflectance: &Reflectance) -> AlbedoLobe {
-    if reflectance.indices().is_some() { lobe.round() } else { lobe.tabulated() }
+    let is_range = reflectance.indices().is_some_and(|range| !range.is_point());
+    if is_range { lobe.round() } else { lobe.tabulated() }
 }
 
 /// The verdict if no albedo is asked for.

@@ -211,7 +211,9 @@ fn of_albedos(spec: &AlbedoSpec) -> [f64; 2] {
             let azimuths = (libm::log(elongation) / 1.2 - 0.75).clamp(0.0, 2.0);
             let is_uneven = rough >= 0.3 && elongation > 3.5;
             let views = if is_uneven { libm::log10(spec.tolerance / 1e-6) } else { 0.0 };
-            [300.0 * tails, azimuths + views.clamp(0.0, 1.0)]
+            // Two shares instead of one, without the fold of round lobes.
+            let refracts = if spec.reflectance.indices().is_some() { 4.0 } else { 1.0 };
+            [300.0 * tails * refracts, azimuths + views.clamp(0.0, 1.0)]
         }
         // Of the lobes of `tables/recipes/tilted-lobes.toml` a node at γ = 2 and 3 takes 2.2 to 2.5
         // times as long as one at γ = ∞; of the heaviest tails hardly any light is clamped, and

@@ -78,8 +78,10 @@ mod tests {
             assert_eq!([mirror, glass].map(|of| stand_in(round, of)), [None; 2], "{round}");
         }
         assert_eq!(stand_in("[0.1, 0.4]", mirror), None);
-        // The model has no refraction for it.
-        let brushed = stand_in("[0.1, 0.4]", glass).unwrap();
+        assert_eq!(stand_in("[0.1, 0.4]", glass), None);
+        // A range of indices has tables of round lobes alone.
+        let glasses = "{ dielectric = { min = 1.3, max = 1.6 } }";
+        let brushed = stand_in("[0.1, 0.4]", glasses).unwrap();
         assert_eq!(brushed, StandIn { sigma: Interval::point(0.2), error: 0.27 });
         let range =
             stand_in("[{ min = 0.1, max = 0.4 }, { min = 0.4, max = 0.9 }]", mirror).unwrap();

@@ -1,5 +1,6 @@
 //! Values of the model against references, brute force, limits and identities.
 
+mod anisotropic_panes;
 mod radial;
 mod reference;
 mod reflection;

@@ -7,7 +7,9 @@ use glam::Vec3;
 use microfacet_core::Masking;
 use microfacet_core::math::unit;
 use microfacet_tables::axis::lagrange::{SIX, combine};
-use microfacet_tables::axis::{PreparedAzimuth, PreparedCritical, PreparedView, ViewBlend};
+use microfacet_tables::axis::{
+    CriticalBlend, PreparedAzimuth, PreparedCritical, PreparedView, ViewBlend,
+};
 use microfacet_tables::{Axis, Interval, Kind, Mapping, Reflectance, Table, Weights};
 
 use super::average::{At, add, over_views};
@@ -229,9 +231,30 @@ enum View {
     /// A round lobe: the same at every azimuth.
     Round(PreparedView),
     /// By the roughness seen from the azimuth. γ is already in the parameters.
-    Turning(PreparedAzimuth, ViewBlend),
+    Turning(PreparedAzimuth, Turning),
     /// From inside a dielectric.
     Critical(PreparedCritical),
+}
+
+/// The coordinate of the view of a lobe that differs by azimuth, before its roughness is known.
+#[derive(Clone, Copy, Debug)]
+enum Turning {
+    Blend(ViewBlend),
+    /// From inside a dielectric of index η, with 1/η.
+    Critical(CriticalBlend, f64),
+}
+
+impl Turning {
+    /// Calls `then` with the coordinate for the roughness seen from an azimuth.
+    fn at<R>(self, sigma: f64, then: impl FnOnce(&Elevation<'_>) -> R) -> R {
+        match self {
+            Self::Blend(blend) => then(&Elevation::Blend(&blend.prepare_shaped(sigma))),
+            Self::Critical(blend, inverse) => {
+                // Of one shape, as of `CriticalBlend::of_shape`, so γ does not matter.
+                then(&Elevation::Critical(&blend.prepare(sigma, f64::INFINITY, inverse)))
+            }
+        }
+    }
 }
 
 /// Azimuths, by index, with their weights.
@@ -258,8 +281,12 @@ impl Curve {
         let rest = &table.axes[at.weights.len()..];
         let view = match (rest[0].mapping, rest[rest.len() - 1].mapping) {
             (Mapping::Azimuth(azimuth), Mapping::ViewBlend(blend)) => {
-                View::Turning(azimuth.prepare(rest[0].len()), blend)
+                View::Turning(azimuth.prepare(rest[0].len()), Turning::Blend(blend))
             }
+            (Mapping::Azimuth(azimuth), Mapping::CriticalBlend(blend)) => View::Turning(
+                azimuth.prepare(rest[0].len()),
+                Turning::Critical(blend, 1.0 / point.eta),
+            ),
             (_, Mapping::ViewBlend(blend)) => View::Round(blend.prepare(at.sigma, point.gamma)),
             (_, Mapping::CriticalBlend(blend)) => {
                 View::Critical(blend.prepare(at.sigma, point.gamma, 1.0 / point.eta))
@@ -280,8 +307,7 @@ impl Curve {
                 let r = libm::hypot(x, y);
                 // Along the normal the azimuth is arbitrary; NaN fails the comparison, too.
                 let (c, s) = if r > 0.0 && r < f64::INFINITY { (x / r, y / r) } else { (1.0, 0.0) };
-                let view = blend.prepare_shaped(azimuth.sigma(c, s));
-                then(&azimuth.six(c, s), &Elevation::Blend(&view))
+                blend.at(azimuth.sigma(c, s), |view| then(&azimuth.six(c, s), view))
             }
         }
     }
@@ -336,8 +362,7 @@ impl Curve {
             View::Turning(azimuth, blend) => {
                 let mut sum = [0.0; N];
                 for ([c, s], share) in azimuth.circle() {
-                    let view = blend.prepare_shaped(azimuth.sigma(c, s));
-                    let part = over(&azimuth.six(c, s), &Elevation::Blend(&view));
+                    let part = blend.at(azimuth.sigma(c, s), |view| over(&azimuth.six(c, s), view));
                     add(&mut sum, share, &part);
                 }
                 sum

@@ -2,7 +2,9 @@
 
 use microfacet_core::Masking;
 use microfacet_core::shape::s_of_gamma;
-use microfacet_tables::{Kind, LobeForm, Mapping, MaterialEntry, Reflectance, Side, Table};
+use microfacet_tables::{
+    Kind, LobeForm, LobeSpec, Mapping, MaterialEntry, Reflectance, Side, Subject, Table,
+};
 
 use super::curve::{DielectricAlbedo, FresnelAlbedo, MaterialPoint, MaterialWeights, ViewCurve};
 use super::directional::Albedo;
@@ -130,8 +132,9 @@ impl Tables {
     ///
     /// Ranges are taken as by [`material_albedo`](Self::material_albedo), that of an index of
     /// refraction at the middle of its coordinate
-    /// [`ReflectanceRoot`](microfacet_tables::axis::ReflectanceRoot). A dielectric has the albedo
-    /// of the round lobe of √(σx σy). For σ = 0 its albedo is that of 1e-8.
+    /// [`ReflectanceRoot`](microfacet_tables::axis::ReflectanceRoot). A dielectric of an anisotropic
+    /// lobe has the albedo of the round lobe of √(σx σy), unless the set has tables of its own. For
+    /// σ = 0 its albedo is that of 1e-8.
     ///
     /// # Errors
     /// [`BindError::NoSuchMaterial`], [`BindError::NoAlbedoOf`] for a material that states no
@@ -164,6 +167,11 @@ impl Tables {
             let distribution = entry.lobe.distribution.clone();
             let distribution = distribution.unwrap_or_else(|| "ellipsoid".into());
             return Err(BindError::OtherDistribution { name: name.into(), distribution });
+        }
+        let lobe = entry.lobe.tabulated();
+        if let Some(own) = self.own_dielectric_albedo(|of| of.contains(&lobe), eta, entry.masking())
+        {
+            return Ok(own);
         }
         let (sigma, gamma) = (entry.lobe.round_sigma(), entry.lobe.gamma());
         Ok(self.dielectric_albedo(sigma, gamma, eta, entry.masking())?)
@@ -199,7 +207,7 @@ impl Tables {
         eta: f64,
         masking: Masking,
     ) -> Result<ViewCurve<2>, MaterialError> {
-        let (side, dense) = if eta < 1.0 { (Side::Dense, 1.0 / eta) } else { (Side::Thin, eta) };
+        let (side, dense) = seen_from(eta);
         let point = MaterialPoint { sigma, gamma, eta: dense };
         let mut tables = self.of_family(Kind::Albedo, masking);
         let found = tables.find_map(|table| {
@@ -211,6 +219,28 @@ impl Tables {
             let nearest = nearest(dielectrics, [sigma, gamma, dense], masking);
             MaterialError::DielectricNotCovered { eta, sigma, gamma, masking, nearest }
         })
+    }
+
+    /// The albedo of a rough dielectric of index η, inside over outside, whose lobe differs by
+    /// azimuth, from its own tables; `None` if the set has none.
+    pub(crate) fn own_dielectric_albedo(
+        &self,
+        is: impl Fn(&LobeSpec) -> bool,
+        eta: f64,
+        masking: Masking,
+    ) -> Option<DielectricAlbedo> {
+        let of_side = |eta: f64| {
+            let (side, dense) = seen_from(eta);
+            let point = MaterialPoint { sigma: f64::NAN, gamma: f64::NAN, eta: dense };
+            self.albedos(Kind::Albedo, masking).find_map(|table| {
+                let Subject { lobe, reflectance, .. } = &table.subject;
+                let here = reflectance.as_ref().and_then(Reflectance::side) == Some(side);
+                (here && !lobe.is_family() && is(lobe))
+                    .then(|| ViewCurve::new(table, &point))
+                    .flatten()
+            })
+        };
+        Some(DielectricAlbedo { masking, outside: of_side(eta)?, inside: of_side(1.0 / eta)? })
     }
 
     /// The albedos of dielectrics of index η ∈ (0, ∞) at every σ and γ. `each` is called with those
@@ -308,6 +338,12 @@ fn albedos(all: &[Table], kind: Kind, masking: Masking) -> impl Iterator<Item = 
 
 fn of_family(all: &[Table], kind: Kind, masking: Masking) -> impl Iterator<Item = &Table> {
     albedos(all, kind, masking).filter(|table| table.subject.lobe.is_family())
+}
+
+/// The side that an interface is seen from, by the index beyond it over that on the viewer's side,
+/// and the index of its dense side over that of the thin one.
+fn seen_from(eta: f64) -> (Side, f64) {
+    if eta < 1.0 { (Side::Dense, 1.0 / eta) } else { (Side::Thin, eta) }
 }
 
 /// How wide a range of shapes a table covers.

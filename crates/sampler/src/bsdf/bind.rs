@@ -16,8 +16,8 @@ use crate::tables::Tables;
 ///
 /// Its albedo is off by 0.07 to 0.6 for anisotropic lobes and by 0.2 to 0.9 for tilted ones
 /// (`docs/albedo.md`), so that compensation then returns too much light or too little. Exact
-/// albedos are baked for a recipe that names the lobe, or when loading; of dielectrics for round
-/// lobes only.
+/// albedos are baked for a recipe that names the lobe, or when loading; of dielectrics for upright
+/// lobes of the family only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum StandIn {
     /// A missing albedo is an error.
@@ -59,12 +59,12 @@ impl Tables {
         Ok(self.albedo(round.0, round.1, masking)?)
     }
 
-    /// The albedo of a dielectric, by event and side: of its round lobe, or of a round lobe in the
+    /// The albedo of a dielectric, by event and side: of the lobe itself, or of a round lobe in the
     /// stead of another.
     ///
     /// # Errors
-    /// [`BindError::RoundOnly`] for a lobe that is not round if `stand_in` refuses a round one,
-    /// [`BindError::NoAlbedo`] naming the lobe.
+    /// [`BindError::NoAlbedo`] naming the lobe, [`BindError::RoundOnly`] for a lobe without such
+    /// tables, tilted or outside the family, if `stand_in` refuses a round one.
     pub fn dielectric_albedo_of(
         &self,
         lobe: &impl Tabulated,
@@ -73,9 +73,20 @@ impl Tables {
         stand_in: StandIn,
     ) -> Result<DielectricAlbedo, BindError> {
         let key = lobe.key();
+        if let Some(own) = self.own_dielectric_albedo(|lobe| key.is(lobe), eta, masking) {
+            return Ok(own);
+        }
         let stood_for = key.round().is_some();
-        let (sigma, gamma) =
-            round(&key, stand_in).ok_or(BindError::RoundOnly { stand_in: stood_for })?;
+        let (sigma, gamma) = round(&key, stand_in).ok_or_else(|| match key {
+            LobeKey::Upright(LobeSpec { distribution: None, .. }) => BindError::NoAlbedo {
+                lobe: Box::new(key.clone()),
+                eta: Some(eta),
+                masking,
+                nearest: None,
+                stand_in: true,
+            },
+            _ => BindError::RoundOnly { stand_in: stood_for },
+        })?;
         self.dielectric_albedo(sigma, gamma, eta, masking).map_err(|why| match why {
             MaterialError::DielectricNotCovered { nearest, .. } => {
                 let lobe = Box::new(LobeKey::Upright(LobeSpec::student_t([sigma; 2], gamma)));

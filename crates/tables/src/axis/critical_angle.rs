@@ -81,6 +81,12 @@ impl CriticalBlend {
     /// large (σ 0.454, γ 3, all indices), with 0 it is 5.9e-3 next to η = 1.
     pub const SOFT: f64 = 0.3;
 
+    /// The parameters for tables of one shape, which need no γ: κ of the shape is their `scale`.
+    #[must_use]
+    pub fn of_shape(&self, gamma: f64) -> Self {
+        Self { scale: kappa(self.scale, self.heavy, gamma), heavy: 0.0, ..*self }
+    }
+
     /// The number of parts: two or three.
     pub fn parts(&self) -> usize {
         parts(self.between)

@@ -106,11 +106,11 @@ impl Kind {
 fn albedo(subject: &Subject) -> Layout {
     let reflectance = subject.reflectance.unwrap_or(Reflectance::Mirror);
     let form = subject.lobe.form();
-    let mut axes = match form {
-        LobeForm::Family => vec![ALBEDO_SHAPE, SIGMA],
-        _ => vec![AZIMUTH],
+    let index = reflectance.indices().map(|_| ETA);
+    let mut axes: Vec<AxisRule> = match form {
+        LobeForm::Family => [ALBEDO_SHAPE, SIGMA].into_iter().chain(index).collect(),
+        _ => index.into_iter().chain([AZIMUTH]).collect(),
     };
-    axes.extend(reflectance.indices().map(|_| ETA));
     axes.push(if reflectance.side() == Some(Side::Dense) { INNER_VIEW } else { VIEW });
     // G1 of a tilted lobe is clamped at one, since the visible area of the microsurface may be less
     // than that of the macrosurface.

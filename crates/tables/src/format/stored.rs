@@ -8,7 +8,7 @@ use microfacet_core::shape::{gamma_of_s, s_of_gamma};
 use serde::{Deserialize, Serialize};
 
 use super::lobe::Roughness;
-use crate::axis::{Axis, Azimuth, Interpolation, Mapping, ViewBlend};
+use crate::axis::{Axis, Azimuth, CriticalBlend, Interpolation, Mapping, ViewBlend};
 use crate::interval::Interval;
 
 /// An interval: its number if it is one, else its ends. ∞, for which JSON has no number, is null,
@@ -130,6 +130,13 @@ impl Single {
                 let all = [ViewBlend::BAKED, ViewBlend::CLOSE].into_iter().find(is);
                 Mapping::ViewBlend(all.unwrap_or(view))
             }
+            Mapping::CriticalBlend(view) => {
+                let is = |all: &CriticalBlend| {
+                    self.of_lobe().is_some_and(|gamma| all.of_shape(gamma) == view)
+                };
+                let all = [CriticalBlend::BAKED, CriticalBlend::UPRIGHT].into_iter().find(is);
+                Mapping::CriticalBlend(all.unwrap_or(view))
+            }
             own => own,
         }
     }
@@ -141,6 +148,9 @@ impl Single {
                 Mapping::Azimuth(Azimuth { sigma, ..azimuth })
             }
             (Mapping::ViewBlend(view), _, Some(gamma)) => Mapping::ViewBlend(view.of_shape(gamma)),
+            (Mapping::CriticalBlend(view), _, Some(gamma)) => {
+                Mapping::CriticalBlend(view.of_shape(gamma))
+            }
             (shared, ..) => shared,
         }
     }

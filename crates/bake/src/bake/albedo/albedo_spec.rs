@@ -70,8 +70,23 @@ impl AlbedoSpec {
         // All numbers of nodes were found by measuring. The interpolating polynomial reads six.
         let nodes = |counts| level.nodes(counts, 6);
         let quality = level.quality() as usize;
+        let is_heavy = lobe.gamma.min < HEAVY;
+        let is_dense = reflectance.side() == Some(Side::Dense);
+        let index = reflectance.indices().map(|index| {
+            let count = nodes([20, 32, 48]);
+            // From inside, where the kinks along the view cross, parts share a node.
+            let is_crossed = is_dense && index.min < SQRT_2 && SQRT_2 < index.max;
+            let (mapping, count) = match is_crossed {
+                true => (Mapping::CrossingRoot(CrossingRoot { crowded: is_heavy }), count | 1),
+                false => (Mapping::ReflectanceRoot, count),
+            };
+            cut("eta", mapping, &even_nodes(0.0, 1.0, count), index.into())
+        });
         let mut axes = match azimuth(&lobe)? {
-            None => materials(&lobe, nodes([16, 24, 44]), nodes([22, 38, 68])),
+            None => {
+                let all = materials(&lobe, nodes([16, 24, 44]), nodes([22, 38, 68]));
+                all.into_iter().chain(index).collect()
+            }
             Some(azimuth) => {
                 // 2ᵏ + 1 nodes in a quarter of the azimuths, before refinement.
                 let quarter = [5, 9, 17][quality];
@@ -81,21 +96,11 @@ impl AlbedoSpec {
                     LobeForm::Ellipsoid => 4 * (quarter - 1),
                     LobeForm::Family | LobeForm::StudentT => quarter,
                 };
-                vec![Axis::placed("azimuth", Mapping::Azimuth(azimuth), INTERPOLATION, count)]
+                let around =
+                    Axis::placed("azimuth", Mapping::Azimuth(azimuth), INTERPOLATION, count);
+                index.into_iter().chain([around]).collect::<Vec<_>>()
             }
         };
-        let is_heavy = lobe.gamma.min < HEAVY;
-        let is_dense = reflectance.side() == Some(Side::Dense);
-        axes.extend(reflectance.indices().map(|index| {
-            let count = nodes([20, 32, 48]);
-            // From inside, where the kinks along the view cross, parts share a node.
-            let is_crossed = is_dense && index.min < SQRT_2 && SQRT_2 < index.max;
-            let (mapping, count) = match is_crossed {
-                true => (Mapping::CrossingRoot(CrossingRoot { crowded: is_heavy }), count | 1),
-                false => (Mapping::ReflectanceRoot, count),
-            };
-            cut("eta", mapping, &even_nodes(0.0, 1.0, count), index.into())
-        }));
         let (view, views) = match lobe.is_family() {
             true if level >= CLOSE_FROM => (ViewBlend::CLOSE, nodes([20, 33, 58])),
             true => (ViewBlend::BAKED, nodes([20, 33, 58])),
@@ -113,6 +118,7 @@ impl AlbedoSpec {
             };
             let soft = if is_range { CriticalBlend::SOFT } else { 0.0 };
             let blend = CriticalBlend { soft, ..blend };
+            let blend = if lobe.is_family() { blend } else { blend.of_shape(tail(&lobe)) };
             let parts = blend.parts();
             let count = parts * (2 * (views - 1)).div_ceil(parts) + 1;
             Axis::placed("view", Mapping::CriticalBlend(blend), INTERPOLATION, count)

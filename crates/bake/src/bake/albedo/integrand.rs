@@ -64,8 +64,8 @@ fn pane(side: Side, model: &Model<'_>, site: &Site) -> Result<Albedo<CHANNELS>, 
         return model.reflection(site, |_| [1.0, 0.0, 0.0]);
     }
     let eta = if side == Side::Dense { 1.0 / site.eta } else { site.eta };
-    let (model, sigma) = model.round(site)?;
-    let shares = model.interface(sigma, site.cos, Dielectric::new(eta)?)?;
+    let (model, sigma) = model.refracting(site)?;
+    let shares = model.interface_anisotropic(sigma, site.cos, site.phi, Dielectric::new(eta)?)?;
     let three = |[reflected, transmitted]: [f64; 2]| [reflected, transmitted, 0.0];
     Ok(Albedo {
         uncorrelated: three(shares.uncorrelated),

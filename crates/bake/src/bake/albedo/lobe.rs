@@ -7,9 +7,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use microfacet_model::classic::{Marginal, RadialAlbedo};
-use microfacet_model::{
-    Albedo, AlbedoIntegrator, Ellipsoid, EllipsoidError, ParameterError, Shape, Skew,
-};
+use microfacet_model::{Albedo, AlbedoIntegrator, Ellipsoid, EllipsoidError, Shape, Skew};
 use microfacet_tables::axis::Azimuth;
 use microfacet_tables::{LobeForm, LobeSpec};
 
@@ -147,7 +145,7 @@ impl Model<'_> {
     /// The albedo of reflection, weighted with some Fresnel weights.
     ///
     /// # Errors
-    /// [`ParameterError`] for a roughness outside the family or cos θ outside [0, 1].
+    /// [`AlbedoError`] for a roughness outside the family or cos θ outside [0, 1].
     pub fn reflection(
         &self,
         site: &Site,
@@ -165,12 +163,15 @@ impl Model<'_> {
         })
     }
 
-    /// The isotropic lobe of the family and its σ; the model has refraction for no other lobe.
-    pub(super) fn round(&self, site: &Site) -> Result<(&AlbedoIntegrator, f64), AlbedoError> {
+    /// The upright lobe of the family and its σx and σy; the model has refraction for no other.
+    pub(super) fn refracting(
+        &self,
+        site: &Site,
+    ) -> Result<(&AlbedoIntegrator, [f64; 2]), AlbedoError> {
         match self {
-            Self::StudentT(None, model) => Ok((model, site.sigma)),
+            Self::StudentT(sigma, model) => Ok((model, sigma.unwrap_or([site.sigma; 2]))),
             _ => Err(AlbedoError::Lobe(
-                "only round Student-t lobes refract light, by their own model".into(),
+                "only upright Student-t lobes refract light, by their own model".into(),
             )),
         }
     }
@@ -179,24 +180,5 @@ impl Model<'_> {
     pub(super) fn area_ratio(&self, site: &Site) -> Option<f64> {
         let Self::Ellipsoid(ellipsoid, _) = self else { return None };
         Some(area_ratio(ellipsoid, site))
-    }
-
-    /// The albedo of the isotropic lobe of the same γ and this roughness; `None` outside the
-    /// family.
-    ///
-    /// # Errors
-    /// As [`reflection`](Self::reflection).
-    pub fn stand_in(
-        &self,
-        sigma: f64,
-        cos: f64,
-        weights: impl Fn(f64) -> [f64; CHANNELS],
-    ) -> Result<Option<Albedo<CHANNELS>>, ParameterError> {
-        match self {
-            Self::StudentT(_, model) | Self::Ellipsoid(_, model) => {
-                model.reflection(sigma, cos, weights).map(Some)
-            }
-            Self::Radial(_) => Ok(None),
-        }
     }
 }
