@@ -5,8 +5,8 @@ use std::f32::consts::PI;
 use super::Texture;
 use crate::ExportFile;
 
-/// The smallest average loss of a row, by which the engine divides: E of the smoothest surface falls
-/// to 0.94 in the cell at the horizon, which by itself loses this much.
+/// The smallest average loss of a row, by which the engine divides: E of the smoothest surface
+/// falls to 0.94 in the cell at the horizon, which by itself loses this much.
 const LEAST_LOSS: f32 = 1.3e-5;
 
 /// MDL: the numbers of texels along roughness, angle and index, then a conductor, a dielectric from
