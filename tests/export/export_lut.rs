@@ -4,18 +4,14 @@
 use std::fs;
 use std::path::Path;
 
-use crate::common::{names, ok, refused, run};
+use crate::common::{names, ok, refused};
 use crate::{colours, image, json};
-use microfacet_baker::bake::albedo::weights;
 use microfacet_baker::progress::Stage;
-use microfacet_export::texture::engine::{LAYOUTS, Layout};
 use microfacet_export::texture::{
     Channels, Checks, Deviation, Format, Made, Place, Shapes, Texture, TextureSpec, check, files,
     known,
 };
-use microfacet_model::{AlbedoIntegrator, Shape};
 use microfacet_sampler::Masking;
-use microfacet_study::engines::shipped;
 use microfacet_tables::axis::LogShape;
 
 const CORRELATED: Masking = Masking::HeightCorrelated;
@@ -245,157 +241,6 @@ fn files_do_not_depend_on_threads() {
     }
 }
 
-/// Numbers from the tables that engines ship, where these are right, by row and column:
-/// Cycles 97dbe6f (Apache-2.0), openpbr-bsdf a29da96 (Apache-2.0), three.js 0.187.0 (MIT).
-#[test]
-fn layouts_are_those_of_engines() {
-    let written = |name: &str| {
-        let layout = Layout::find(name).unwrap();
-        let specs = layout.specs(2.0, layout.size, false);
-        let textures: Vec<Texture> = specs.iter().map(made).collect();
-        (layout, textures.clone(), layout.files(&textures).unwrap())
-    };
-    let (layout, textures, files) = written("cycles");
-    let cycles = shipped::decode(layout, &files[0].contents);
-    let text = String::from_utf8(files[0].contents.clone()).unwrap();
-    assert!(text.starts_with("/* Albedo of gamma 2, height-correlated masking, 32x32, exact"));
-    assert!(text.contains("static const float table_ggx_E[1024] = {\n  1.000000f, 0.98"), "{text}");
-    assert!(text.contains("static const float table_ggx_Eavg[32] = {\n  1.000000f, "));
-    for (row, column, value) in [
-        (1, 5, 0.891678),
-        (5, 10, 0.889039),
-        (16, 16, 0.847421),
-        (31, 31, 0.306853),
-        (8, 24, 0.727744),
-        (31, 5, 0.999296),
-    ] {
-        let found = cycles.values[32 * row + column];
-        assert!((found - value).abs() < 2.1e-6, "{row}, {column}: {found}");
-    }
-    for (i, value) in [(5, 0.997199), (16, 0.870874), (31, 0.409137)] {
-        assert!((textures[1].values[i] - value).abs() < 4e-6, "{i}: {}", textures[1].values[i]);
-    }
-
-    let (layout, _, files) = written("openpbr");
-    assert_eq!(files[1].name, "openpbr_ideal_metal_avg_energy_complement_data.h");
-    let openpbr = shipped::decode(layout, &files[0].contents);
-    for (row, column, value) in
-        [(16, 16, 10152.0), (20, 5, 14115.0), (31, 31, 45425.0), (24, 10, 22312.0)]
-    {
-        let found = 65535.0 * openpbr.values[32 * row + column];
-        // Shipped values are within 4e-5 of exact ones here.
-        assert!((found - value).abs() < 3.0, "{row}, {column}: {found}");
-    }
-
-    let (layout, _, files) = written("three");
-    let three = shipped::decode(layout, &files[0].contents);
-    for (row, column, scale, bias) in [(15, 15, 0.3452, 7.051e-5), (12, 4, 0.9893, 0.001015)] {
-        let found = &three.values[2 * (16 * row + column)..][..2];
-        // From 4,096 samples.
-        let near = (found[0] - scale).abs() < 3e-4 && (found[1] - bias).abs() < 3e-5;
-        assert!(near, "{row}, {column}: {found:?}");
-    }
-}
-
-/// Texels are where engines read them, by formulas that are written independently here.
-#[test]
-fn texels_of_layouts_are_where_engines_read_them() {
-    let middle = |i: usize, n: usize| (i as f64 + 0.5) / n as f64;
-    let end = |i: usize, n: usize| i as f64 / (n - 1) as f64;
-    // √α and μ of a row and a column, and which channels are E, scale and bias.
-    type At = fn(&dyn Fn(usize, usize) -> f64, [usize; 2], [usize; 2]) -> [f64; 2];
-    let rough_first: At = |c, [i, j], [rows, columns]| [c(i, rows), c(j, columns)];
-    let view_first: At = |c, [i, j], [rows, columns]| [c(j, columns), c(i, rows)];
-    let size = [9, 14];
-    let integrator = AlbedoIntegrator::new(Shape::new(2.0).unwrap(), 1e-8);
-    for layout in &LAYOUTS {
-        let (at, channels): (At, &[&str]) = match layout.name {
-            "cycles" => (view_first, &["e"]),
-            "openpbr" | "osl" => (rough_first, &["lost"]),
-            "filament" | "unity" | "babylon" => (rough_first, &["bias", "e", ""]),
-            "three" => (view_first, &["scale", "bias"]),
-            "bevy" => (rough_first, &["scale", "bias"]),
-            "materialx" | "gltf" => (rough_first, &["scale", "bias", ""]),
-            other => panic!("{other} has no formula here"),
-        };
-        let ends = ["cycles", "openpbr", "osl", "unity"].contains(&layout.name);
-        let texture = made(&layout.specs(2.0, size, false)[0]);
-        for texel in [[2, 11], [7, 3]] {
-            let coordinate: &dyn Fn(usize, usize) -> f64 = if ends { &end } else { &middle };
-            let [root, cos] = at(coordinate, texel, size);
-            let sigma = if layout.name == "materialx" { root } else { root * root };
-            let cos = if ["osl", "unity"].contains(&layout.name) { cos * cos } else { cos };
-            let albedo = integrator.reflection(sigma, cos, weights).unwrap();
-            let uncorrelated = layout.name == "openpbr";
-            let of = if uncorrelated { albedo.uncorrelated } else { albedo.height_correlated };
-            for (k, channel) in channels.iter().enumerate() {
-                let want = match *channel {
-                    "e" => of[0] + of[1],
-                    "lost" => 1.0 - of[0] - of[1],
-                    "scale" => of[0],
-                    "bias" => of[1],
-                    _ => 0.0,
-                };
-                let index = (texel[0] * size[1] + texel[1]) * channels.len() + k;
-                let found = f64::from(texture.values[index]);
-                assert!((found - want).abs() < 1e-6, "{}: {found} for {want}", layout.name);
-            }
-        }
-    }
-}
-
-/// Every layout is read back as it was made, except for the rounding of its format.
-#[test]
-fn layouts_are_read_back() {
-    for layout in &LAYOUTS {
-        let size = if ["cycles", "openpbr", "osl"].contains(&layout.name) {
-            layout.size
-        } else {
-            [12, 12]
-        };
-        let textures: Vec<Texture> = layout.specs(2.0, size, false).iter().map(made).collect();
-        let files = layout.files(&textures).unwrap();
-        let back = shipped::decode(layout, &files[0].contents);
-        // Six decimals, sixteen bits, eight bits, and eight bits of a power.
-        let allowed = match layout.name {
-            "cycles" => 6e-7,
-            "openpbr" => 8e-6,
-            "filament" | "three" | "bevy" => 2.5e-4,
-            "gltf" => 2e-3,
-            "babylon" => 4.4e-3,
-            _ => 0.0,
-        };
-        for (got, want) in back.values.iter().zip(&textures[0].values) {
-            assert!((got - want).abs() <= allowed, "{}: {got} for {want}", layout.name);
-        }
-    }
-}
-
-/// Texels at the middles are clamped beyond the last, at α = 1: this, not the cosine, darkens rough
-/// metal in three.js, whose shader divides by E.
-#[test]
-fn a_clamp_at_the_last_middle_shows_at_full_roughness() {
-    let worst = |name: &str, root: f64| {
-        let layout = Layout::find(name).unwrap();
-        let spec = &layout.specs(2.0, layout.size, false)[0];
-        let cos = |i: i32| Some(0.05 + 0.95 * f64::from(i) / 99.0);
-        let at = |i| Place { gamma: 2.0, sigma: root * root, eta: None, cos: cos(i) };
-        let places: Vec<Place> = (0..100).map(at).collect();
-        let known = known(&places, spec.masking, &Stage::unwatched()).unwrap();
-        let found = Checks::at(spec, &known).of(&made(spec), |_| true);
-        found.iter().find(|found| found.quantity == "e").unwrap().relative
-    };
-    let [largest, rms] = worst("three", 1.0);
-    let [percent, mean] = [largest, rms].map(|share| 100.0 * share);
-    println!("three.js, alpha 1: E too large by {percent:.1} %, root mean square {mean:.1} %");
-    assert!((0.12..0.13).contains(&largest) && (0.06..0.07).contains(&rms), "{largest} {rms}");
-    for (name, root) in [("three", 31.0 / 32.0), ("cycles", 1.0)] {
-        let [largest, _] = worst(name, root);
-        println!("{name}, sqrt(alpha) {root}: {:.1} %", 100.0 * largest);
-        assert!(largest < 0.02, "{name}: {largest}");
-    }
-}
-
 /// Images of two channels are refused by readers that want colours, such as three.js's.
 #[test]
 fn two_channels_are_written_as_three_colours() {
@@ -407,31 +252,6 @@ fn two_channels_are_written_as_three_colours() {
     assert_eq!(shape, [4, 5, 2]);
     let values: Vec<f32> = floats.as_chunks().0.iter().map(|&x| f32::from_le_bytes(x)).collect();
     assert_eq!(image(&at.join("out/lut.exr")), ([5, 4], colours(&values)));
-}
-
-#[test]
-fn layouts_are_written() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = folder.path();
-    let notes = |more: &[&str]| {
-        let output = run(at, &[&["export", "lut", "--out", "out", "--layout"], more].concat());
-        assert!(output.status.success());
-        String::from_utf8(output.stderr).unwrap()
-    };
-    let osl = notes(&["osl", "--fit"]);
-    assert!(osl.contains("put the file in place of SPI/microfacet_tools_luts.h"), "{osl}");
-    let text = fs::read_to_string(at.join("out/microfacet_tools_luts.h")).unwrap();
-    assert!(text.contains("BSDL_INLINE_METHOD MiniMicrofacetGGX::Energy& "), "{text}");
-    assert_eq!(text.matches("f,").count(), 256);
-    let babylon = notes(&["babylon", "--size", "8x8"]);
-    for needed in ["isRGBD = true", "noMipmap", "invertY", "CLAMP_ADDRESSMODE"] {
-        assert!(babylon.contains(needed), "{babylon}");
-    }
-    let three = notes(&["three", "--size", "8x8", "--gamma", "3"]);
-    assert!(three.contains("has 16x16 texels: change its constants"), "{three}");
-    // The engine's own lobe and filter are another's.
-    assert!(three.contains("GGX as its lobe") && three.contains("gamma = 3"), "{three}");
-    assert!(!babylon.contains("GGX as its lobe"), "{babylon}");
 }
 
 #[test]
@@ -477,9 +297,12 @@ fn what_cannot_be_made_is_refused_with_a_remedy() {
     for (more, says) in [
         (&["--gamma", "2", "--format", "png"][..], "exr, dds, ktx2, npy, c, json"),
         (&["--gamma", "2"], "or an engine with --layout"),
-        (&["--layout", "unreal"], "cycles, openpbr, osl, filament, three, bevy"),
+        (&["--layout", "unreal"], "cycles, cycles-glass, openpbr, openpbr-dielectric, mdl, eevee"),
         (&["--layout", "cycles", "--format", "npy"], "cannot be used with"),
         (&["--layout", "cycles", "--size", "8x8x8"], "has 2 sizes"),
+        (&["--layout", "mdl", "--size", "8x8"], "has 3 sizes: indices first, as 16x32x32"),
+        (&["--layout", "cycles-glass", "--size", "3x8x8"], "a size of 3 must lie in [4, 4096]"),
+        (&["--layout", "unity"], "cycles, cycles-glass, openpbr"),
         (&["--gamma", "2", "--format", "npy", "--fit"], "--layout"),
     ] {
         let message = refused(at, &[&lut[..], more].concat());

@@ -5,6 +5,7 @@ mod common;
 
 mod export;
 mod export_lut;
+mod layouts;
 
 use std::path::Path;
 

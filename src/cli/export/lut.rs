@@ -202,15 +202,15 @@ fn of_family(args: &Args) -> Result<()> {
 /// Textures in the layout of an engine.
 fn of_engine(layout: &Layout, args: &Args) -> Result<()> {
     let gamma = args.gamma.unwrap_or(2.0);
-    let size = args.size.as_ref().map_or(&layout.size[..], |size| &size.0);
-    texture::check(Shapes::One(gamma), 1.0, size).map_err(Failure::msg)?;
+    let size = args.size.as_ref().map_or(layout.size, |size| &size.0);
+    layout.check(gamma, size).map_err(Failure::msg)?;
     let out = OutputFolder::open(&args.out)?;
-    let size = [size[0], size[1]];
-    let ([rows, columns], engine) = (layout.size, layout.engine);
+    let engine = layout.engine;
     if size != layout.size {
+        let shipped: Vec<String> = layout.size.iter().map(usize::to_string).collect();
         note(format!(
-            "the table of {engine} has {rows}x{columns} texels: change its constants of the size \
-             as well"
+            "the table of {engine} has {} texels: change its constants of the size as well",
+            shipped.join("x")
         ));
     }
     let specs = layout.specs(gamma, size, args.fit);
@@ -220,7 +220,7 @@ fn of_engine(layout: &Layout, args: &Args) -> Result<()> {
     let textures = make(&specs, false, |spec, [values, _]| Ok(spec.make(values)?))?;
     super::write(&out, &layout.files(&textures).map_err(Failure::msg)?)?;
     note(format!("{engine}: {}", layout.advice));
-    if gamma != 2.0 {
+    if !layout.lobes.contains(&gamma) {
         note(format!(
             "{engine} has GGX as its lobe, and filters environments by it: give both gamma = \
              {gamma} as well (docs/ibl.md), else the energy of this table is not theirs"

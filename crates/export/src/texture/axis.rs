@@ -1,5 +1,7 @@
 //! The axes of a texture: quantities, their coordinates, and the texels.
 
+use std::f64::consts::FRAC_PI_2;
+
 use microfacet_tables::axis::{LogShape, ViewBlend};
 
 /// The most axes of a texture.
@@ -48,6 +50,22 @@ pub enum Along {
     },
     /// σ itself, up to 1.
     LinearRoughness,
+    /// n, linear between two values. η is n, or 1/n seen from inside.
+    Index {
+        /// n at 0.
+        first: f64,
+        /// n at 1.
+        last: f64,
+        /// Whether the surface is seen from inside.
+        inside: bool,
+    },
+    /// √((n−1)/(n+1)), the fourth root of the reflectance of the normal view.
+    Contrast {
+        /// The largest value of a texel, which stands for larger ones.
+        most: f64,
+        /// Whether the surface is seen from inside.
+        inside: bool,
+    },
     /// x^¼, x = μ/(μ + κσ√(1−μ²)); made by [`Along::view`].
     View(ViewBlend),
     /// μ.
@@ -55,8 +73,13 @@ pub enum Along {
         /// The smallest μ of a texel.
         least: f64,
     },
-    /// √μ.
-    RootCosine,
+    /// The angle θ over that of the horizon.
+    Angle,
+    /// √(1−μ).
+    RootVersine {
+        /// The smallest μ of a texel.
+        least: f64,
+    },
 }
 
 impl Along {
@@ -69,7 +92,15 @@ impl Along {
 
     /// Whether it is a view, which depends on the material in some coordinates.
     pub fn is_view(self) -> bool {
-        matches!(self, Self::View(_) | Self::Cosine { .. } | Self::RootCosine)
+        matches!(self, Self::View(_) | Self::Cosine { .. } | Self::Angle | Self::RootVersine { .. })
+    }
+
+    /// Of an index, whether the dielectric is seen from inside.
+    pub fn inside(self) -> Option<bool> {
+        match self {
+            Self::Index { inside, .. } | Self::Contrast { inside, .. } => Some(inside),
+            _ => None,
+        }
     }
 
     /// Sets the quantity at the coordinate c; the material must be set before the view.
@@ -86,13 +117,22 @@ impl Along {
                 place.cos = Some(view.prepare(place.sigma, place.gamma).quantity(c));
             }
             Self::Cosine { least } => place.cos = Some(c.max(least)),
-            Self::RootCosine => place.cos = Some(c * c),
+            Self::Angle => place.cos = Some(if c == 1.0 { 0.0 } else { (FRAC_PI_2 * c).cos() }),
+            Self::RootVersine { least } => place.cos = Some((1.0 - c * c).max(least)),
+            Self::Index { first, last, inside } => {
+                place.eta = Some(eta(first + (last - first) * c, inside));
+            }
+            Self::Contrast { most, inside } => {
+                let square = c.min(most).powi(2);
+                place.eta = Some(eta((1.0 + square) / (1.0 - square), inside));
+            }
         }
     }
 
     /// The coordinate of a place.
     fn of(self, place: &Place) -> f64 {
         let cos = || place.cos.expect("a place with a view");
+        let index = |inside| eta(place.eta.expect("a place with an index"), inside);
         match self {
             Self::Shape { smallest } => {
                 let coordinate = |gamma| LogShape::BAKED.coordinate(gamma);
@@ -102,9 +142,20 @@ impl Along {
             Self::LinearRoughness => place.sigma,
             Self::View(view) => view.prepare(place.sigma, place.gamma).coordinate(cos()),
             Self::Cosine { .. } => cos(),
-            Self::RootCosine => cos().sqrt(),
+            Self::Angle => cos().acos() / FRAC_PI_2,
+            Self::RootVersine { .. } => (1.0 - cos()).sqrt(),
+            Self::Index { first, last, inside } => (index(inside) - first) / (last - first),
+            Self::Contrast { inside, .. } => {
+                let n = index(inside);
+                ((n - 1.0) / (n + 1.0)).max(0.0).sqrt()
+            }
         }
     }
+}
+
+/// η of n, and n of η: the reciprocal seen from inside.
+fn eta(n: f64, inside: bool) -> f64 {
+    if inside { n.recip() } else { n }
 }
 
 /// An axis of a texture. A filter clamps to the first and the last texel, and is linear between.
@@ -131,6 +182,11 @@ impl TexelAxis {
     /// Whether shapes run along it.
     pub fn is_of_shapes(&self) -> bool {
         matches!(self.along, Along::Shape { .. })
+    }
+
+    /// Whether a texture is made of slices along it, of a shape or of an index each.
+    pub fn is_of_slices(&self) -> bool {
+        self.is_of_shapes() || self.along.inside().is_some()
     }
 
     /// How many texels it has.

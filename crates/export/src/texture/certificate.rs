@@ -7,7 +7,7 @@ use microfacet_model::ParameterError;
 
 use super::axis::{AXES, Place, TexelAxis, array, coordinates};
 use super::fit::{Filter, Tap};
-use super::truth::{Channel, FINEST, Truth, truths};
+use super::truth::{Channel, FINEST, FINEST_OF_INTERFACES, Truth, truths};
 use super::{Texture, TextureSpec};
 
 /// Even points of a certificate for each texel, and the fewest and the most of them, of albedos and
@@ -51,7 +51,8 @@ pub struct Known {
     pub truth: Truth,
 }
 
-/// The model's albedos at places of any shapes, under one form of masking.
+/// The model's albedos at places of any shapes, under one form of masking; all of them or none have
+/// a view, and so it is with an index.
 ///
 /// # Errors
 /// [`ParameterError`] for a place outside the domain of the model.
@@ -62,7 +63,8 @@ pub fn known(
 ) -> Result<Vec<Known>, ParameterError> {
     let gammas = places.iter().map(|place| place.gamma);
     let average = places.first().is_some_and(|place| place.cos.is_none());
-    let finest = FINEST[usize::from(average)];
+    let interface = places.first().is_some_and(|place| place.eta.is_some());
+    let finest = if interface { FINEST_OF_INTERFACES } else { FINEST }[usize::from(average)];
     let truths = truths(gammas, places.len(), |i| places[i], masking, finest, stage)?;
     Ok(places.iter().zip(truths).map(|(&place, truth)| Known { place, truth }).collect())
 }
@@ -110,7 +112,7 @@ impl Checks {
         let average = usize::from(!spec.is_directional());
         let [fewest, most] = EVENLY[average];
         let count = (PER_TEXEL * filter.texels).clamp(fewest, most);
-        let shapes = axes.iter().find(|axis| axis.is_of_shapes());
+        let shapes = axes.iter().find(|axis| axis.is_of_slices());
         let slices = shapes.map_or(vec![f64::NAN], slices);
         let share = count / slices.len();
         let of = |at: [f64; AXES]| match spec.place(&at) {
@@ -234,9 +236,9 @@ fn slices(axis: &TexelAxis) -> Vec<f64> {
 /// A point of an even sequence, in the slice of a shape.
 fn even(axes: &[TexelAxis], slice: f64, i: usize) -> [f64; AXES] {
     let mut steps = EVEN.iter();
-    let mut along = |axis: &TexelAxis| match axis.is_of_shapes() {
+    let mut along = |axis: &TexelAxis| match axis.is_of_slices() {
         true => slice,
-        false => (0.5 + i as f64 * steps.next().expect("two axes beside shapes")).fract(),
+        false => (0.5 + i as f64 * steps.next().expect("two axes beside slices")).fract(),
     };
     array(axes.iter().map(&mut along))
 }
@@ -249,7 +251,7 @@ fn edges(axes: &[TexelAxis], slice: f64, per_cell: usize) -> impl Iterator<Item 
     let point = move |along: f64, first: bool| {
         let mut nth = 0;
         array(axes.iter().map(|axis| {
-            if axis.is_of_shapes() {
+            if axis.is_of_slices() {
                 return slice;
             }
             nth += 1;

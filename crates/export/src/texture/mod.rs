@@ -8,6 +8,7 @@
 
 mod axis;
 mod certificate;
+mod domain;
 pub mod engine;
 mod file;
 mod fit;
@@ -18,14 +19,13 @@ use std::slice::from_ref;
 
 use half::f16;
 use microfacet_baker::progress::Stage;
-use microfacet_baker::table_spec::GAMMA_MIN;
 use microfacet_core::Masking;
 use microfacet_model::ParameterError;
-use microfacet_tables::SIGMA_MAX;
 use rayon::prelude::*;
 
 pub use axis::{Along, Place, TexelAxis};
 pub use certificate::{Checks, Deviation, Known, known};
+pub use domain::{MOST_TEXELS, SIZES, check};
 pub(crate) use file::ktx2::encode_texels;
 pub use file::{BeforeRounding, Format, Made, files};
 pub use shader::coordinates as shader_coordinates;
@@ -34,23 +34,16 @@ pub use truth::{Channel, Truth};
 
 pub use axis::place;
 use axis::{AXES, array, coordinates};
+use domain::check_size;
 use fit::{Filter, Tap, Target, fit};
-use truth::{COARSEST, FINEST, truths};
+use truth::{COARSEST, FINEST, FINEST_OF_INTERFACES, truths};
 
-/// The fewest and the most texels along an axis.
-pub const SIZES: [usize; 2] = [4, 4096];
-/// The most texels of a texture.
-pub const MOST_TEXELS: usize = 1 << 24;
 /// Textures of more texels than this hold the values at the texels. Errors fall with the square of
 /// their number along an axis, from 5.2e-3 for γ = ∞ in 32 × 32 texels, and a fit, whose memory
 /// grows with its points, gains no more than half.
 pub const MOST_FITTED: usize = 1 << 18;
 /// The smallest cosine for which a certificate holds.
 pub const LEAST_COS: f64 = 1e-4;
-/// The smallest σ_max and the largest end of a range of shapes; beyond, single precision cannot
-/// tell the ends of an axis apart.
-const LEAST_SIGMA_MAX: f64 = 1e-4;
-const MOST_GAMMA_MIN: f64 = 1e4;
 /// Points of a fit within each cell along each axis: the texel and the middle, between which linear
 /// interpolation of a smooth function errs less. With 3, the error of E for γ = ∞ in 32 × 32 texels
 /// is 2.9e-3 instead of 2.6e-3.
@@ -61,6 +54,7 @@ const PER_CELL_OF_ENGINES: usize = 3;
 /// Seconds that one albedo, and one average, take on one processor in 32 × 32 texels; only their
 /// ratio matters, for the progress that is shown.
 const SECONDS: [f64; 2] = [7e-5, 1.2e-3];
+const SECONDS_OF_INTERFACES: [f64; 2] = [1e-3, 2.8e-2];
 
 /// The shapes of a texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -183,12 +177,18 @@ impl TextureSpec {
         self.axes.iter().any(|axis| axis.along.is_view())
     }
 
+    /// Whether it is of the shares of an interface.
+    pub fn is_of_interfaces(&self) -> bool {
+        self.eta.is_some() || self.axes.iter().any(|axis| axis.along.inside().is_some())
+    }
+
     /// An estimate of the seconds that it takes on one processor; only ratios are meaningful.
     pub fn seconds(&self) -> f64 {
         let texels: f64 = self.axes.iter().map(|axis| axis.len() as f64).product();
         let per_cell = self.per_cell() as f64;
         let points = if self.fitted { per_cell.powi(self.axes.len() as i32) } else { 1.0 };
-        SECONDS[usize::from(!self.is_directional())] * texels * (points + 1.0)
+        let each = if self.is_of_interfaces() { SECONDS_OF_INTERFACES } else { SECONDS };
+        each[usize::from(!self.is_directional())] * texels * (points + 1.0)
     }
 
     /// The error that the model's values aim at: the finest where they are the texels. Where texels
@@ -198,7 +198,8 @@ impl TextureSpec {
         let average = usize::from(!self.is_directional());
         let longest = self.axes.iter().map(TexelAxis::len).max().unwrap_or(1);
         let loose = [3e-2, 1e-1][average] / (longest * longest) as f64;
-        if self.fitted { loose.clamp(FINEST[average], COARSEST[average]) } else { FINEST[average] }
+        let finest = if self.is_of_interfaces() { FINEST_OF_INTERFACES } else { FINEST }[average];
+        if self.fitted { loose.clamp(finest, COARSEST[average]) } else { finest }
     }
 
     /// The model's values at places, as [`truths`].
@@ -317,7 +318,9 @@ impl TextureSpec {
     /// counts, which is not on the grid.
     fn points(&self) -> Vec<(Place, Tap)> {
         let filter = Filter::new(&self.axes);
-        let dense = |axis: &TexelAxis| axis.dense(self.per_cell());
+        let dense = |axis: &TexelAxis| {
+            axis.dense(if axis.along.inside().is_some() { PER_CELL } else { self.per_cell() })
+        };
         let grid = self.grid(dense);
         let of = |i| {
             let at = grid.at(i);
@@ -325,22 +328,22 @@ impl TextureSpec {
         };
         let mut points: Vec<_> = (0..grid.len()).into_par_iter().map(of).collect();
         if self.is_directional() {
-            let shapes = self.axes.iter().find(|axis| axis.is_of_shapes());
-            for shape in shapes.map_or(vec![f64::NAN], dense) {
-                points.extend(self.horizon(&filter, shape, self.per_cell()));
+            let slices = self.axes.iter().find(|axis| axis.is_of_slices());
+            for slice in slices.map_or(vec![f64::NAN], dense) {
+                points.extend(self.horizon(&filter, slice, self.per_cell()));
             }
         }
         points
     }
 
     /// Points of the smallest cosine that counts, from the smoothest surface to the roughest of one
-    /// shape: `per_cell` or more in each cell that they run through, along either axis. On smooth
-    /// surfaces they run through all coordinates of the view.
-    fn horizon(&self, filter: &Filter, shape: f64, per_cell: usize) -> Vec<(Place, Tap)> {
+    /// shape or index: `per_cell` or more in each cell that they run through, along either axis. On
+    /// smooth surfaces they run through all coordinates of the view.
+    fn horizon(&self, filter: &Filter, slice: f64, per_cell: usize) -> Vec<(Place, Tap)> {
         let of = |rough: f64| {
-            let at = array(self.axes.iter().map(|axis| match axis.along {
-                Along::Shape { .. } => shape,
-                along if along.is_view() => 0.0,
+            let at = array(self.axes.iter().map(|axis| match axis {
+                axis if axis.is_of_slices() => slice,
+                axis if axis.along.is_view() => 0.0,
                 _ => rough,
             }));
             let place = self.place(&at);
@@ -413,47 +416,4 @@ impl Texture {
     pub fn size(&self) -> Vec<usize> {
         self.spec.axes.iter().map(TexelAxis::len).collect()
     }
-}
-
-/// Checks the shapes, the largest roughness and the size of a texture.
-///
-/// # Errors
-/// A message with the value, what is allowed, and what to do.
-pub fn check(shapes: Shapes, sigma_max: f64, size: &[usize]) -> Result<(), String> {
-    let (gamma, axes, form) = match shapes {
-        Shapes::One(gamma) => (gamma, 2, "SxT, as 32x32"),
-        Shapes::DownTo(gamma) => (gamma, 3, "GxSxT, as 32x64x64"),
-    };
-    let [fewest, most] = SIZES;
-    let texels: usize = size.iter().product();
-    let why = if !(gamma >= GAMMA_MIN) {
-        format!(
-            "gamma = {gamma} is below {GAMMA_MIN}, the smallest shape that textures cover; raise it"
-        )
-    } else if matches!(shapes, Shapes::DownTo(f64::INFINITY)) {
-        "a range of shapes goes from infinity down: give its smallest gamma, or ask for the one \
-         shape gamma = inf"
-            .into()
-    } else if !(sigma_max > 0.0 && sigma_max <= SIGMA_MAX) {
-        format!("sigma-max = {sigma_max} must lie in (0, {SIGMA_MAX}]; 1 is what engines use")
-    } else if sigma_max < LEAST_SIGMA_MAX {
-        format!(
-            "sigma-max = {sigma_max} is below {LEAST_SIGMA_MAX}: all of the texture would be a \
-             mirror's; raise it"
-        )
-    } else if matches!(shapes, Shapes::DownTo(gamma) if gamma > MOST_GAMMA_MIN) {
-        format!(
-            "gamma-min = {gamma} is above {MOST_GAMMA_MIN}: all of the volume would be Beckmann's; \
-             ask for the one shape gamma = inf"
-        )
-    } else if size.len() != axes {
-        format!("a texture of these shapes has {axes} sizes: {form}")
-    } else if let Some(n) = size.iter().find(|n| !(fewest..=most).contains(*n)) {
-        format!("a size of {n} must lie in [{fewest}, {most}]; give {form}")
-    } else if texels > MOST_TEXELS {
-        format!("{texels} texels are more than {MOST_TEXELS}; name smaller sizes")
-    } else {
-        return Ok(());
-    };
-    Err(why)
 }

@@ -1,5 +1,7 @@
 //! The line with which a shader reads a texture.
 
+use std::f64::consts::FRAC_2_PI;
+
 use microfacet_tables::axis::LogShape;
 
 use super::axis::{Along, TexelAxis};
@@ -130,7 +132,18 @@ impl Dialect {
             }
             Along::LinearRoughness => "sigma".into(),
             Along::Cosine { .. } => "mu".into(),
-            Along::RootCosine => format!("{sqrt}(mu)"),
+            Along::Angle => {
+                format!("{}(mu) * {}", self.function("acos"), number(FRAC_2_PI))
+            }
+            Along::RootVersine { .. } => format!("{sqrt}({max}({zero}, {one} - mu))"),
+            Along::Index { first, last, inside } => {
+                let n = if inside { format!("{one} / eta") } else { "eta".into() };
+                format!("({n} - {}) / {}", number(first), number(last - first))
+            }
+            Along::Contrast { inside, .. } => {
+                let (a, b) = if inside { (&*one, "eta") } else { ("eta", &*one) };
+                format!("{sqrt}({max}({zero}, {a} - {b}) / ({a} + {b}))")
+            }
         }
     }
 }

@@ -4,16 +4,10 @@ use png::ColorType;
 
 use super::Texture;
 use crate::ExportFile;
-use crate::texture::file::{exr, ktx2};
+use crate::texture::file::ktx2;
 
 /// The exponent with which Babylon.js decodes colours.
 const GAMMA: f32 = 2.2;
-
-/// OpenEXR in single precision.
-pub(super) fn open_exr(textures: &[Texture]) -> Result<Vec<ExportFile>, String> {
-    let name = format!("{}.exr", textures[0].spec.name);
-    Ok(vec![ExportFile::new(name, exr(&textures[0], None)?)])
-}
 
 /// Bevy: KTX 2 with two halves a texel.
 pub(super) fn bevy(textures: &[Texture]) -> Result<Vec<ExportFile>, String> {

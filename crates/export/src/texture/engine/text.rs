@@ -24,34 +24,91 @@ fn provenance(texture: &Texture) -> String {
 
 /// Cycles: arrays of decimal numbers, to replace those in `src/scene/shader.tables`.
 pub(super) fn cycles(textures: &[Texture]) -> Result<Vec<ExportFile>, String> {
-    let mut text =
-        format!("/* {} Replaces the arrays of these names. */\n\n", provenance(&textures[0]));
-    for texture in textures {
-        let row = texture.size().last().copied().unwrap_or(1);
-        let name = &texture.spec.name;
-        let _ = writeln!(text, "static const float table_{name}[{}] = {{", texture.values.len());
-        for row in texture.values.chunks(row) {
-            let row: String = row.iter().map(|x| format!("{x:.6}f, ")).collect();
-            let _ = writeln!(text, "  {}", row.trim_end());
-        }
-        text += "};\n\n";
+    Ok(vec![ExportFile::new("shader.tables", arrays(textures))])
+}
+
+/// As [`cycles`]. The first slice, of equal indices, is 1: the engine lets light straight through
+/// such a surface, and divides by the table.
+pub(super) fn cycles_glass(textures: &[Texture]) -> Result<Vec<ExportFile>, String> {
+    let mut textures = textures.to_vec();
+    for texture in &mut textures {
+        let slice = texture.values.len() / texture.size()[0];
+        texture.values[..slice].fill(1.0);
     }
-    Ok(vec![ExportFile::new("shader.tables", text)])
+    Ok(vec![ExportFile::new("shader_glass.tables", arrays(&textures))])
+}
+
+/// Arrays of decimal numbers, a blank line between the slices of a volume.
+fn arrays(textures: &[Texture]) -> String {
+    let mut text =
+        format!("/* {} Replaces the arrays of these names. */\n", provenance(&textures[0]));
+    for texture in textures {
+        let size = texture.size();
+        let name = &texture.spec.name;
+        let row = size.last().copied().unwrap_or(1);
+        let rows = if size.len() == 3 { size[1] } else { usize::MAX };
+        let _ = write!(text, "\nstatic const float table_{name}[{}] = {{", texture.values.len());
+        for (i, row) in texture.values.chunks(row).enumerate() {
+            let gap = if i > 0 && i % rows == 0 { "\n" } else { "" };
+            let row: String = row.iter().map(|x| format!("{x:.6}f, ")).collect();
+            let _ = write!(text, "{gap}\n  {}", row.trim_end());
+        }
+        text += "\n};\n";
+    }
+    text
+}
+
+/// The body of an array of sixteen-bit integers, from channels of textures one after another.
+fn integers(name: &str, parts: &[(&Texture, usize)]) -> ExportFile {
+    let values = parts.iter().flat_map(|(texture, channel)| texture.plane(*channel));
+    let numbers: Vec<String> = values.map(|x| ((65535.0 * x).round() as u16).to_string()).collect();
+    let text = format!(
+        "// {}\n// clang-format off\n{}\n// clang-format on\n",
+        provenance(parts[0].0),
+        numbers.join(", ")
+    );
+    ExportFile::new(format!("openpbr_{name}_data.h"), text)
 }
 
 /// OpenPBR: bodies of arrays of sixteen-bit integers.
 pub(super) fn openpbr(textures: &[Texture]) -> Result<Vec<ExportFile>, String> {
     let body = |texture: &Texture| {
-        let integer = |x: &f32| ((65535.0 * x).round() as u16).to_string();
-        let numbers: Vec<String> = texture.values.iter().map(integer).collect();
-        let text = format!(
-            "// {}\n// clang-format off\n{}\n// clang-format on\n",
-            provenance(texture),
-            numbers.join(", ")
-        );
-        ExportFile::new(format!("openpbr_{}_energy_complement_data.h", texture.spec.name), text)
+        integers(&format!("{}_energy_complement", texture.spec.name), &[(texture, 0)])
     };
     Ok(textures.iter().map(body).collect())
+}
+
+/// As [`openpbr`], of tables from inside and from outside.
+pub(super) fn openpbr_dielectric(textures: &[Texture]) -> Result<Vec<ExportFile>, String> {
+    let body = |name: &str, first: usize, channel: usize| {
+        integers(name, &[(&textures[first], channel), (&textures[first + 2], channel)])
+    };
+    Ok(vec![
+        body("ideal_dielectric_energy_complement", 0, 0),
+        body("opaque_dielectric_energy_complement", 0, 1),
+        body("ideal_dielectric_avg_energy_complement", 1, 0),
+        body("opaque_dielectric_avg_energy_complement", 1, 1),
+    ])
+}
+
+/// EEVEE: an array of texels, to replace that in `eevee_lut.cc`.
+pub(super) fn eevee(textures: &[Texture]) -> Result<Vec<ExportFile>, String> {
+    let texture = &textures[0];
+    let size = texture.size();
+    let mut text = format!(
+        "/* {} Replaces the array of this name. */\nconst float {}[{}][{}][3] = {{\n",
+        provenance(texture),
+        texture.spec.name,
+        size[0],
+        size[1]
+    );
+    for row in texture.values.chunks(3 * size[1]) {
+        let texel = |x: &[f32]| format!("{{{:.6}f, {:.6}f, {:.6}f}}", x[0], x[1], x[2]);
+        let texels: Vec<String> = row.chunks(3).map(texel).collect();
+        let _ = writeln!(text, "    {{{}}},", texels.join(", "));
+    }
+    text += "};\n";
+    Ok(vec![ExportFile::new("eevee_lut.cc", text)])
 }
 
 /// OSL: a header with a definition of `get_energy`.

@@ -84,8 +84,20 @@ fn along(along: Along, gamma: f64) -> Value {
             },
         }),
         Along::Cosine { .. } => json!({ "coordinate": "mu = cos theta" }),
-        Along::RootCosine => json!({ "coordinate": "sqrt(mu), mu = cos theta" }),
+        Along::Angle => json!({ "coordinate": "2 theta / pi" }),
+        Along::RootVersine { .. } => json!({ "coordinate": "sqrt(1 - mu), mu = cos theta" }),
+        Along::Index { first, last, inside } => json!({
+            "coordinate": format!("(n - {first}) / ({last} - {first}), n = {}", index(inside)),
+        }),
+        Along::Contrast { inside, .. } => json!({
+            "coordinate": format!("sqrt((n - 1) / (n + 1)), n = {}", index(inside)),
+        }),
     }
+}
+
+/// n, in words of η.
+fn index(inside: bool) -> &'static str {
+    if inside { "1 / eta" } else { "eta" }
 }
 
 /// An error in three digits.

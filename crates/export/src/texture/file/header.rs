@@ -68,7 +68,11 @@ fn function(made: &Made, channels: usize, guard: &str) -> String {
             Along::Shape { smallest } => ("gamma", smallest, "INFINITY".into()),
             Along::Roughness { largest } => ("sigma", 0.0, number(largest)),
             Along::LinearRoughness => ("sigma", 0.0, number(1.0)),
-            Along::View(_) | Along::Cosine { .. } | Along::RootCosine => {
+            Along::Index { inside: true, .. } | Along::Contrast { inside: true, .. } => {
+                ("eta", 0.0, number(1.0))
+            }
+            Along::Index { .. } | Along::Contrast { .. } => ("eta", 1.0, "INFINITY".into()),
+            Along::View(_) | Along::Cosine { .. } | Along::Angle | Along::RootVersine { .. } => {
                 ("mu", spec.least_cos, number(1.0))
             }
         };

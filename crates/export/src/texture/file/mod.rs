@@ -75,7 +75,7 @@ pub fn files(formats: &[Format], made: &[Made]) -> Result<Vec<ExportFile>, Strin
         for format in formats {
             let compact = || describe::compact(&description);
             let contents = match format {
-                Format::Exr => exr(&made.texture, Some(&compact()))?,
+                Format::Exr => exr(&made.texture, &compact())?,
                 Format::Dds => dds::encode(&made.texture),
                 Format::Ktx2 => ktx2::encode(&made.texture, Some(&compact())),
                 Format::Npy => npy::encode(&made.texture),
@@ -111,8 +111,8 @@ fn bytes(texture: &Texture) -> Vec<u8> {
     }
 }
 
-pub(super) fn exr(texture: &Texture, description: Option<&str>) -> Result<Vec<u8>, String> {
+fn exr(texture: &Texture, description: &str) -> Result<Vec<u8>, String> {
     let [width, height, depth] = extent(texture);
     let planes = (0..texture.spec.channels.len()).map(|i| texture.plane(i).collect()).collect();
-    open_exr(&texture.spec.name, [width, height * depth], planes, texture.half, description)
+    open_exr(&texture.spec.name, [width, height * depth], planes, texture.half, Some(description))
 }
