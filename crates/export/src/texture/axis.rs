@@ -2,15 +2,21 @@
 
 use microfacet_tables::axis::{LogShape, ViewBlend};
 
+use super::interface::{critical_coordinate, index_coordinate};
+
 /// The most axes of a texture.
 pub(super) const AXES: usize = 3;
 
 /// The smallest σ of a texel. Below it the albedo depends on cot θ/σ alone; at 0 it is constant.
-const MIRROR: f64 = 1e-8;
+pub(super) const MIRROR: f64 = 1e-8;
 
 /// Coordinates in the first cell of roughnesses. With 2, the error of E for γ = 1.501 in 32 × 32
 /// texels is 1.1e-2 instead of 7.6e-3.
 const FIRST_CELL: usize = 16;
+
+/// The same of indices, of which the smallest change shares fastest. In other cells the texels are
+/// enough: shares change least along indices.
+const FIRST_OF_INDICES: usize = 4;
 
 /// A material and a view of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +47,14 @@ pub enum Along {
         /// γ at 1.
         smallest: f64,
     },
+    /// √((η−1)/(η+1)), between its values at both ends; η is the index of the denser medium over
+    /// that of the other.
+    Index {
+        /// η at 0 and 1.
+        ends: [f64; 2],
+        /// Whether views are from inside the denser medium.
+        inside: bool,
+    },
     /// √(σ/σ_max).
     Roughness {
         /// σ_max.
@@ -50,6 +64,11 @@ pub enum Along {
     LinearRoughness,
     /// x^¼, x = μ/(μ + κσ√(1−μ²)); made by [`Along::view`].
     View(ViewBlend),
+    /// The view from inside a medium, which crowds at the critical angle as well.
+    Critical {
+        /// The share of x^0.3, which crowds at the horizon.
+        near: f64,
+    },
     /// μ.
     Cosine {
         /// The smallest μ of a texel.
@@ -69,7 +88,20 @@ impl Along {
 
     /// Whether it is a view, which depends on the material in some coordinates.
     pub fn is_view(self) -> bool {
-        matches!(self, Self::View(_) | Self::Cosine { .. } | Self::RootCosine)
+        matches!(
+            self,
+            Self::View(_) | Self::Critical { .. } | Self::Cosine { .. } | Self::RootCosine
+        )
+    }
+
+    /// The name of its quantity in shaders and C.
+    pub(super) fn argument(self) -> &'static str {
+        match self {
+            Self::Shape { .. } => "gamma",
+            Self::Index { .. } => "eta",
+            Self::Roughness { .. } | Self::LinearRoughness => "sigma",
+            Self::View(_) | Self::Critical { .. } | Self::Cosine { .. } | Self::RootCosine => "mu",
+        }
     }
 
     /// Sets the quantity at the coordinate c; the material must be set before the view.
@@ -80,10 +112,26 @@ impl Along {
                 // Exactly the γ that was asked for, without rounding.
                 place.gamma = if c == 1.0 { smallest } else { LogShape::BAKED.quantity(c * last) };
             }
+            Self::Index { ends, inside } => {
+                let [first, last] = ends.map(index_coordinate);
+                let square = (first + c * (last - first)).powi(2);
+                // Exactly the ends that were asked for, without rounding.
+                let eta = match c {
+                    0.0 => ends[0],
+                    1.0 => ends[1],
+                    _ => (1.0 + square) / (1.0 - square),
+                };
+                place.eta = Some(if inside { 1.0 / eta } else { eta });
+            }
             Self::Roughness { largest } => place.sigma = (largest * c * c).max(MIRROR),
             Self::LinearRoughness => place.sigma = c.max(MIRROR),
             Self::View(view) => {
                 place.cos = Some(view.prepare(place.sigma, place.gamma).quantity(c));
+            }
+            Self::Critical { near } => {
+                let (material, eta) = (*place, place.eta.expect("an interface"));
+                let below = |cos: f64| critical_coordinate(near, &material, eta, cos) < c;
+                place.cos = Some(if c == 1.0 { 1.0 } else { first_not(below) });
             }
             Self::Cosine { least } => place.cos = Some(c.max(least)),
             Self::RootCosine => place.cos = Some(c * c),
@@ -98,12 +146,31 @@ impl Along {
                 let coordinate = |gamma| LogShape::BAKED.coordinate(gamma);
                 coordinate(place.gamma) / coordinate(smallest)
             }
+            Self::Index { ends, .. } => {
+                let [first, last] = ends.map(index_coordinate);
+                (index_coordinate(place.eta.expect("an interface")) - first) / (last - first)
+            }
             Self::Roughness { largest } => (place.sigma / largest).sqrt(),
             Self::LinearRoughness => place.sigma,
             Self::View(view) => view.prepare(place.sigma, place.gamma).coordinate(cos()),
+            Self::Critical { near } => {
+                critical_coordinate(near, place, place.eta.expect("an interface"), cos())
+            }
             Self::Cosine { .. } => cos(),
             Self::RootCosine => cos().sqrt(),
         }
+    }
+}
+
+/// The smallest number in [0, 1] that is not below what is sought.
+fn first_not(below: impl Fn(f64) -> bool) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    loop {
+        let middle = 0.5 * (low + high);
+        if !(middle > low && middle < high) {
+            return high;
+        }
+        if below(middle) { low = middle } else { high = middle }
     }
 }
 
@@ -133,6 +200,11 @@ impl TexelAxis {
         matches!(self.along, Along::Shape { .. })
     }
 
+    /// Whether it is the slow axis of a volume, of which certificates take slices.
+    pub fn is_sliced(&self) -> bool {
+        matches!(self.along, Along::Shape { .. } | Along::Index { .. })
+    }
+
     /// How many texels it has.
     #[allow(clippy::len_without_is_empty, reason = "no axis is empty")]
     pub fn len(&self) -> usize {
@@ -151,8 +223,12 @@ impl TexelAxis {
     pub fn dense(&self, per_cell: usize) -> Vec<f64> {
         let mut all = vec![0.0];
         let mut cell = |from: f64, to: f64| {
-            let smooth = all.len() == 1 && matches!(self.along, Along::Roughness { .. });
-            let parts = if smooth { FIRST_CELL } else { per_cell };
+            let parts = match self.along {
+                Along::Roughness { .. } if all.len() == 1 => FIRST_CELL,
+                Along::Index { .. } if all.len() == 1 => FIRST_OF_INDICES,
+                Along::Index { .. } => 1,
+                _ => per_cell,
+            };
             let part = |i: usize| from + (to - from) * i as f64 / parts as f64;
             all.extend((1..=parts).map(part));
         };

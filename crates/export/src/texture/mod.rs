@@ -8,9 +8,12 @@
 
 mod axis;
 mod certificate;
+mod check;
+mod edge;
 pub mod engine;
 mod file;
 mod fit;
+mod interface;
 mod shader;
 mod truth;
 
@@ -18,16 +21,18 @@ use std::slice::from_ref;
 
 use half::f16;
 use microfacet_baker::progress::Stage;
-use microfacet_baker::table_spec::GAMMA_MIN;
 use microfacet_core::Masking;
 use microfacet_model::ParameterError;
-use microfacet_tables::SIGMA_MAX;
 use rayon::prelude::*;
 
 pub use axis::{Along, Place, TexelAxis};
 pub use certificate::{Checks, Deviation, Known, known};
+pub use check::check;
+use check::{check_size, check_surface};
+pub use edge::Edge;
 pub(crate) use file::ktx2::encode_texels;
 pub use file::{BeforeRounding, Format, Made, files};
+pub use interface::{ETA, Indices, check_interface};
 pub use shader::coordinates as shader_coordinates;
 pub use shader::{Lines, shader_lines};
 pub use truth::{Channel, Truth};
@@ -35,7 +40,7 @@ pub use truth::{Channel, Truth};
 pub use axis::place;
 use axis::{AXES, array, coordinates};
 use fit::{Filter, Tap, Target, fit};
-use truth::{COARSEST, FINEST, truths};
+use truth::{COARSEST, COARSEST_OF_INTERFACES, FINEST, truths};
 
 /// The fewest and the most texels along an axis.
 pub const SIZES: [usize; 2] = [4, 4096];
@@ -47,20 +52,19 @@ pub const MOST_TEXELS: usize = 1 << 24;
 pub const MOST_FITTED: usize = 1 << 18;
 /// The smallest cosine for which a certificate holds.
 pub const LEAST_COS: f64 = 1e-4;
-/// The smallest σ_max and the largest end of a range of shapes; beyond, single precision cannot
-/// tell the ends of an axis apart.
-const LEAST_SIGMA_MAX: f64 = 1e-4;
-const MOST_GAMMA_MIN: f64 = 1e4;
 /// Points of a fit within each cell along each axis: the texel and the middle, between which linear
 /// interpolation of a smooth function errs less. With 3, the error of E for γ = ∞ in 32 × 32 texels
 /// is 2.9e-3 instead of 2.6e-3.
 const PER_CELL: usize = 2;
+/// The same along the smallest cosine that counts, of interfaces, whose coordinate has but one cell
+/// there. With 2, the largest error from inside glass in 32 × 32 texels is 5.1e-3 instead of 3.2e-3.
+const PER_HORIZON: usize = 6;
 /// The same along coordinates of engines, in which E of smooth surfaces changes within a cell. With
 /// 2, the table of Cycles errs by 9.1e-2 instead of 4.9e-2.
 const PER_CELL_OF_ENGINES: usize = 3;
-/// Seconds that one albedo, and one average, take on one processor in 32 × 32 texels; only their
-/// ratio matters, for the progress that is shown.
-const SECONDS: [f64; 2] = [7e-5, 1.2e-3];
+/// Seconds that one albedo of a mirror and of an interface take on one processor, and one average,
+/// in 32 texels along each axis; only their ratio matters, for the progress that is shown.
+const SECONDS: [[f64; 2]; 2] = [[7e-5, 1e-3], [1.2e-3, 2e-2]];
 
 /// The shapes of a texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -165,7 +169,8 @@ impl TextureSpec {
     /// The texture of its averages, by another name.
     pub fn average(&self, name: &str) -> Self {
         let axes = self.axes.iter().filter(|axis| !axis.along.is_view()).cloned().collect();
-        Self { name: name.into(), axes, ..self.clone() }
+        let channels = self.channels.iter().map(|channel| channel.of_averages()).collect();
+        Self { name: name.into(), axes, channels, ..self.clone() }
     }
 
     /// The place at one coordinate along each axis.
@@ -188,17 +193,22 @@ impl TextureSpec {
         let texels: f64 = self.axes.iter().map(|axis| axis.len() as f64).product();
         let per_cell = self.per_cell() as f64;
         let points = if self.fitted { per_cell.powi(self.axes.len() as i32) } else { 1.0 };
-        SECONDS[usize::from(!self.is_directional())] * texels * (points + 1.0)
+        let [mirror, interface] = SECONDS[usize::from(!self.is_directional())];
+        let one = if self.side().is_some() { interface } else { mirror };
+        one * texels * (points + 1.0)
     }
 
     /// The error that the model's values aim at: the finest where they are the texels. Where texels
     /// are fitted to them, or judged by them, 3e-2/n² and of averages 1e-1/n², with n texels along
-    /// the longest axis: even those of GGX up to σ = 1 err by 0.6/n², and by 0.16/n².
+    /// the longest axis: even those of GGX up to σ = 1 err by 0.6/n², and by 0.16/n². Textures of
+    /// interfaces err by more than 1/n², and need a tenth of that.
     fn tolerance(&self) -> f64 {
         let average = usize::from(!self.is_directional());
         let longest = self.axes.iter().map(TexelAxis::len).max().unwrap_or(1);
-        let loose = [3e-2, 1e-1][average] / (longest * longest) as f64;
-        if self.fitted { loose.clamp(FINEST[average], COARSEST[average]) } else { FINEST[average] }
+        let share = if self.side().is_some() { [3e-1, 1.0] } else { [3e-2, 1e-1] };
+        let loose = share[average] / (longest * longest) as f64;
+        let coarsest = if self.side().is_some() { COARSEST_OF_INTERFACES } else { COARSEST };
+        if self.fitted { loose.clamp(FINEST[average], coarsest[average]) } else { FINEST[average] }
     }
 
     /// The model's values at places, as [`truths`].
@@ -325,22 +335,23 @@ impl TextureSpec {
         };
         let mut points: Vec<_> = (0..grid.len()).into_par_iter().map(of).collect();
         if self.is_directional() {
-            let shapes = self.axes.iter().find(|axis| axis.is_of_shapes());
-            for shape in shapes.map_or(vec![f64::NAN], dense) {
-                points.extend(self.horizon(&filter, shape, self.per_cell()));
+            let sliced = self.axes.iter().find(|axis| axis.is_sliced());
+            let along_horizon = if self.side().is_some() { PER_HORIZON } else { self.per_cell() };
+            for slice in sliced.map_or(vec![f64::NAN], dense) {
+                points.extend(self.horizon(&filter, slice, along_horizon));
             }
         }
         points
     }
 
     /// Points of the smallest cosine that counts, from the smoothest surface to the roughest of one
-    /// shape: `per_cell` or more in each cell that they run through, along either axis. On smooth
+    /// slice: `per_cell` or more in each cell that they run through, along either axis. On smooth
     /// surfaces they run through all coordinates of the view.
-    fn horizon(&self, filter: &Filter, shape: f64, per_cell: usize) -> Vec<(Place, Tap)> {
+    fn horizon(&self, filter: &Filter, slice: f64, per_cell: usize) -> Vec<(Place, Tap)> {
         let of = |rough: f64| {
-            let at = array(self.axes.iter().map(|axis| match axis.along {
-                Along::Shape { .. } => shape,
-                along if along.is_view() => 0.0,
+            let at = array(self.axes.iter().map(|axis| match axis {
+                sliced if sliced.is_sliced() => slice,
+                view if view.along.is_view() => 0.0,
                 _ => rough,
             }));
             let place = self.place(&at);
@@ -413,47 +424,4 @@ impl Texture {
     pub fn size(&self) -> Vec<usize> {
         self.spec.axes.iter().map(TexelAxis::len).collect()
     }
-}
-
-/// Checks the shapes, the largest roughness and the size of a texture.
-///
-/// # Errors
-/// A message with the value, what is allowed, and what to do.
-pub fn check(shapes: Shapes, sigma_max: f64, size: &[usize]) -> Result<(), String> {
-    let (gamma, axes, form) = match shapes {
-        Shapes::One(gamma) => (gamma, 2, "SxT, as 32x32"),
-        Shapes::DownTo(gamma) => (gamma, 3, "GxSxT, as 32x64x64"),
-    };
-    let [fewest, most] = SIZES;
-    let texels: usize = size.iter().product();
-    let why = if !(gamma >= GAMMA_MIN) {
-        format!(
-            "gamma = {gamma} is below {GAMMA_MIN}, the smallest shape that textures cover; raise it"
-        )
-    } else if matches!(shapes, Shapes::DownTo(f64::INFINITY)) {
-        "a range of shapes goes from infinity down: give its smallest gamma, or ask for the one \
-         shape gamma = inf"
-            .into()
-    } else if !(sigma_max > 0.0 && sigma_max <= SIGMA_MAX) {
-        format!("sigma-max = {sigma_max} must lie in (0, {SIGMA_MAX}]; 1 is what engines use")
-    } else if sigma_max < LEAST_SIGMA_MAX {
-        format!(
-            "sigma-max = {sigma_max} is below {LEAST_SIGMA_MAX}: all of the texture would be a \
-             mirror's; raise it"
-        )
-    } else if matches!(shapes, Shapes::DownTo(gamma) if gamma > MOST_GAMMA_MIN) {
-        format!(
-            "gamma-min = {gamma} is above {MOST_GAMMA_MIN}: all of the volume would be Beckmann's; \
-             ask for the one shape gamma = inf"
-        )
-    } else if size.len() != axes {
-        format!("a texture of these shapes has {axes} sizes: {form}")
-    } else if let Some(n) = size.iter().find(|n| !(fewest..=most).contains(*n)) {
-        format!("a size of {n} must lie in [{fewest}, {most}]; give {form}")
-    } else if texels > MOST_TEXELS {
-        format!("{texels} texels are more than {MOST_TEXELS}; name smaller sizes")
-    } else {
-        return Ok(());
-    };
-    Err(why)
 }
