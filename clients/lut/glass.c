@@ -1,5 +1,6 @@
-/* Reads materials and views from standard input, eta sigma mu a line, and prints the shares that are
-   reflected and transmitted and their averages as the headers have them: from inside for eta < 1. */
+/* Reads materials and views from standard input, eta sigma mu a line, and prints the shares that
+   are reflected and transmitted and their averages as the headers have them: from inside for
+   eta < 1. */
 #include <stdio.h>
 
 #include "lut_inside.h"

@@ -37,17 +37,17 @@ pub(super) struct Args {
     /// Smallest shape of a range, which ends at infinity; the texture is a volume.
     #[arg(long, value_name = "G", value_parser = values::gamma, conflicts_with_all = ["gamma", "layout"])]
     gamma_min: Option<f64>,
-    /// Index of refraction of an interface in [1.05, 3], or a range of them as 1.05..2.5: textures of
-    /// the shares of light that are reflected and transmitted, from outside and from inside, of one
-    /// shape. The index is that of the denser medium over that of the other.
+    /// Index of refraction of an interface in [1.05, 3], or a range of them as 1.05..2.5: textures
+    /// of the shares of light that are reflected and transmitted, from outside and from inside, of
+    /// one shape. The index is that of the denser medium over that of the other.
     #[arg(long, value_name = "N", value_parser = indices, conflicts_with_all = ["gamma_min", "layout", "channels"])]
     eta: Option<Indices>,
     /// Largest roughness, in (0, 3]; 3 by default.
     #[arg(long, value_name = "X", value_parser = values::finite, conflicts_with = "layout")]
     sigma_max: Option<f64>,
     /// Texels along roughness and view, rows and columns of the texture, or along shape, roughness
-    /// and view, or along index, roughness and view; each in [4, 4096]. By default 64x64, 32x64x64 or
-    /// 32x32x32, or what an engine has.
+    /// and view, or along index, roughness and view; each in [4, 4096]. By default 64x64,
+    /// 32x64x64 or 32x32x32, or what an engine has.
     #[arg(long, value_name = "SIZE", value_parser = size)]
     size: Option<Size>,
     /// Form of masking: G1(v) G1(l) or 1/(1 + lambda(v) + lambda(l)).
