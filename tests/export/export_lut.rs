@@ -203,6 +203,24 @@ fn files_hold_the_same_values() {
     assert_eq!(ktx.levels().next().unwrap().data, halves);
 }
 
+/// Each side of an interface and its averages, in two channels.
+#[test]
+fn interfaces_are_written_from_both_sides() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let export = ["export", "lut", "--gamma", "2", "--eta", "1.3..1.6", "--sigma-max", "1"];
+    ok(at, &[&export[..], &["--size", "4x4x5", "--format", "npy", "--out", "out"]].concat());
+    let out = at.join("out");
+    for side in ["outside", "inside"] {
+        let [views, averages] = ["", "_average"].map(|of| out.join(format!("lut_{side}{of}.npy")));
+        assert_eq!(array(&views, "<f4").0, [4, 4, 5, 2]);
+        assert_eq!(array(&averages, "<f4").0, [4, 4, 2]);
+        let told = json(&out.join(format!("lut_{side}.json")));
+        assert_eq!(told["side"], side);
+        assert_eq!(told["axes_slowest_first"][0]["eta_max"], 1.6);
+    }
+}
+
 /// All names in a header have a suffix, so that a texture may be named by a keyword of C.
 #[test]
 fn headers_are_named_by_any_word() {
@@ -210,7 +228,12 @@ fn headers_are_named_by_any_word() {
         let specs =
             TextureSpec::of_shapes(name, Shapes::One(2.0), 1.0, &[4, 4], CORRELATED, channels);
         for spec in specs.map(|spec| TextureSpec { fitted: false, ..spec }) {
-            let one = Made { texture: made(&spec), errors: Vec::new(), before_rounding: None };
+            let one = Made {
+                texture: made(&spec),
+                errors: Vec::new(),
+                edges: Vec::new(),
+                before_rounding: None,
+            };
             let header = files(&[Format::C], &[one]).unwrap().remove(0).contents;
             let header = String::from_utf8(header).unwrap();
             let name = &spec.name;
@@ -290,6 +313,13 @@ fn what_cannot_be_made_is_refused_with_a_remedy() {
         (&["--gamma", "2", "--name", "gl_x"], "C++ and GLSL reserve"),
         (&["--gamma", "2", "--name", "math", "--format", "c"], "as math_albedo"),
         (&[], "name a shape with --gamma"),
+        (&["--eta", "1.5"], "name a shape with --gamma"),
+        (&["--gamma", "2", "--eta", "0.66"], "eta = 0.66 must lie in [1.05, 3]"),
+        (&["--gamma", "2", "--eta", "2..1.5"], "from a smaller to a larger index"),
+        (&["--gamma", "2", "--eta", "1.5-2"], "as 1.5, or two with .. between them"),
+        (&["--gamma", "2", "--eta", "1.5..2", "--size", "8x8"], "has 3 sizes: HxSxT"),
+        (&["--gamma-min", "2", "--eta", "1.5"], "cannot be used with"),
+        (&["--gamma", "2", "--eta", "1.5", "--channels", "e"], "cannot be used with"),
     ] {
         let message = refused(at, &[&lut[..], &npy, more].concat());
         assert!(message.contains(says), "{more:?}: {message}");

@@ -9,7 +9,8 @@ use microfacet_baker::store::OutputFolder;
 use microfacet_export::texture;
 use microfacet_export::texture::engine::{LAYOUTS, Layout};
 use microfacet_export::texture::{
-    BeforeRounding, Channels, Deviation, Format, Made, Shapes, TextureSpec, shader_lines,
+    BeforeRounding, Channels, Deviation, Format, Indices, Made, Shapes, Texture, TextureSpec,
+    shader_lines,
 };
 use microfacet_sampler::Masking;
 use microfacet_tables::SIGMA_MAX;
@@ -25,6 +26,8 @@ use crate::cli::{Failure, Result, bail, ensure, note, summarize, watched};
 GGX up to sigma 1 in 32 texels along the roughness and 32 along the view.
   microfacet-bake export lut --gamma-min 1.6 --size 32x64x64 --format dds --out lut
 All shapes from 1.6 to infinity, as a volume.
+  microfacet-bake export lut --gamma 2 --eta 1.05..2.5 --sigma-max 1 --format dds --out lut
+Reflected and transmitted light at interfaces of these indices, from outside and from inside.
   microfacet-bake export lut --layout cycles --out lut
 What Cycles reads, with exact values; with --fit, with values fitted to its filter.")]
 pub(super) struct Args {
@@ -34,17 +37,23 @@ pub(super) struct Args {
     /// Smallest shape of a range, which ends at infinity; the texture is a volume.
     #[arg(long, value_name = "G", value_parser = values::gamma, conflicts_with_all = ["gamma", "layout"])]
     gamma_min: Option<f64>,
+    /// Index of refraction of an interface in [1.05, 3], or a range of them as 1.05..2.5: textures
+    /// of the shares of light that are reflected and transmitted, from outside and from inside, of
+    /// one shape. The index is that of the denser medium over that of the other.
+    #[arg(long, value_name = "N", value_parser = indices, conflicts_with_all = ["gamma_min", "layout", "channels"])]
+    eta: Option<Indices>,
     /// Largest roughness, in (0, 3]; 3 by default.
     #[arg(long, value_name = "X", value_parser = values::finite, conflicts_with = "layout")]
     sigma_max: Option<f64>,
     /// Texels along roughness and view, rows and columns of the texture, or along shape, roughness
-    /// and view; each in [4, 4096]. By default 64x64, or 32x64x64, or what an engine has.
+    /// and view, or along index, roughness and view; each in [4, 4096]. By default 64x64,
+    /// 32x64x64 or 32x32x32, or what an engine has.
     #[arg(long, value_name = "SIZE", value_parser = size)]
     size: Option<Size>,
     /// Form of masking: G1(v) G1(l) or 1/(1 + lambda(v) + lambda(l)).
     #[arg(long, value_parser = values::masking(), default_value = Masking::HeightCorrelated.name(), conflicts_with = "layout")]
     masking: Masking,
-    /// What a texel holds.
+    /// What a texel holds; those of interfaces hold both shares.
     #[arg(long, value_parser = named(&CHANNELS), ignore_case = true, default_value = "e", conflicts_with = "layout")]
     channels: Channels,
     /// Formats of files, separated by commas; needed without --layout. A description in JSON is
@@ -60,7 +69,8 @@ pub(super) struct Args {
     /// Fit the values of a layout to its filter; by default they are exact at its texels.
     #[arg(long)]
     fit: bool,
-    /// Name of the files, and of what C declares; the averages add _average.
+    /// Name of the files, and of what C declares; sides of an interface add _outside and _inside,
+    /// and averages _average.
     #[arg(long, default_value = "lut", value_parser = name, conflicts_with = "layout")]
     name: String,
     /// Folder to write into.
@@ -105,6 +115,22 @@ fn size(text: &str) -> Result<Size> {
     }
 }
 
+/// Parses an index, or two with .. between them.
+fn indices(text: &str) -> Result<Indices> {
+    let number = |part: &str| part.trim().parse::<f64>().ok();
+    let indices = match text.split_once("..") {
+        Some((low, high)) => match (number(low), number(high)) {
+            (Some(low), Some(high)) => Some(Indices::Between([low, high])),
+            _ => None,
+        },
+        None => number(text).map(Indices::One),
+    };
+    indices.map_or_else(
+        || bail!("\"{text}\" must be an index, as 1.5, or two with .. between them, as 1.05..2.5"),
+        Ok,
+    )
+}
+
 fn name(text: &str) -> Result<String> {
     let good = |c: char| c == '_' || c.is_ascii_lowercase() || c.is_ascii_digit();
     ensure!(
@@ -141,19 +167,37 @@ fn of_family(args: &Args) -> Result<()> {
         "--fit is of a layout: name one with --layout, or leave it out; other textures are always \
          fitted"
     );
-    let (shapes, default): (_, &[usize]) = match (args.gamma, args.gamma_min) {
-        (Some(gamma), _) => (Shapes::One(gamma), &[64, 64]),
-        (None, Some(smallest)) => (Shapes::DownTo(smallest), &[32, 64, 64]),
+    let sigma_max = args.sigma_max.unwrap_or(SIGMA_MAX);
+    let name = &args.name;
+    let size =
+        |default: &[usize]| args.size.as_ref().map_or(default.to_vec(), |size| size.0.clone());
+    let shapes = match (args.gamma, args.gamma_min) {
+        (Some(gamma), _) => Shapes::One(gamma),
+        (None, Some(smallest)) => Shapes::DownTo(smallest),
         (None, None) => bail!(
             "name a shape with --gamma, a range of them with --gamma-min, or an engine with \
              --layout"
         ),
     };
-    let size = args.size.as_ref().map_or(default, |size| &size.0);
-    let sigma_max = args.sigma_max.unwrap_or(SIGMA_MAX);
-    texture::check(shapes, sigma_max, size).map_err(Failure::msg)?;
-    let name = &args.name;
-    let specs = TextureSpec::of_shapes(name, shapes, sigma_max, size, args.masking, args.channels);
+    let specs: Vec<TextureSpec> = match (args.eta, shapes) {
+        (Some(indices), Shapes::One(gamma) | Shapes::DownTo(gamma)) => {
+            let size = size(match indices {
+                Indices::One(_) => &[64, 64],
+                Indices::Between(_) => &[32, 32, 32],
+            });
+            texture::check_interface(gamma, indices, sigma_max, &size).map_err(Failure::msg)?;
+            TextureSpec::of_interface(name, gamma, indices, sigma_max, &size, args.masking).into()
+        }
+        (None, shapes) => {
+            let size = size(match shapes {
+                Shapes::One(_) => &[64, 64],
+                Shapes::DownTo(_) => &[32, 64, 64],
+            });
+            texture::check(shapes, sigma_max, &size).map_err(Failure::msg)?;
+            let (masking, channels) = (args.masking, args.channels);
+            TextureSpec::of_shapes(name, shapes, sigma_max, &size, masking, channels).into()
+        }
+    };
     let formats = distinct(args.format.iter().copied());
     ensure!(
         !formats.is_empty(),
@@ -168,21 +212,27 @@ fn of_family(args: &Args) -> Result<()> {
     note_unfitted(&specs[0]);
     let made = make(&specs, true, |spec, stages| {
         let (texture, checks) = spec.make_checked(stages)?;
-        let errors = checks.of(&texture, |_| true);
-        if !args.half {
-            return Ok(Made { texture, errors, before_rounding: None });
-        }
-        let (texture, rounding) = texture.rounded();
-        let rounded = checks.of(&texture, |_| true);
-        let before_rounding = Some(BeforeRounding { errors, rounding });
-        Ok(Made { texture, errors: rounded, before_rounding })
+        let of = |texture: &Texture| checks.of(texture, |_| true);
+        let (texture, before_rounding) = if args.half {
+            let (rounded, rounding) = texture.rounded();
+            (rounded, Some(BeforeRounding { errors: of(&texture), rounding }))
+        } else {
+            (texture, None)
+        };
+        let (errors, edges) = (of(&texture), checks.along_edges(&texture));
+        Ok(Made { texture, errors, edges, before_rounding })
     })?;
     super::write(&out, &texture::files(&formats, &made).map_err(Failure::msg)?)?;
-    for Made { texture, errors, before_rounding } in &made {
+    for Made { texture, errors, edges, before_rounding } in &made {
         let name = &texture.spec.name;
         for error in errors {
             let (quantity, largest, rms) = (error.quantity, error.largest, error.rms);
             summarize(&format!("{name}: error of {quantity} {largest:.1e}, RMS {rms:.1e}\n"))?;
+        }
+        for (edge, errors) in edges {
+            let one = |error: &Deviation| format!("{} {:.1e}", error.quantity, error.largest);
+            let all: Vec<String> = errors.iter().map(one).collect();
+            summarize(&format!("{name}, {}: {}\n", edge.name(), all.join(", ")))?;
         }
         if let Some(BeforeRounding { errors, .. }) = before_rounding {
             let one = |error: &Deviation| format!("{} {:.1e}", error.quantity, error.largest);

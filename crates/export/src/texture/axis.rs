@@ -4,15 +4,21 @@ use std::f64::consts::FRAC_PI_2;
 
 use microfacet_tables::axis::{LogShape, ViewBlend};
 
+use super::interface::{critical_coordinate, index_coordinate};
+
 /// The most axes of a texture.
 pub(super) const AXES: usize = 3;
 
 /// The smallest σ of a texel. Below it the albedo depends on cot θ/σ alone; at 0 it is constant.
-const MIRROR: f64 = 1e-8;
+pub(super) const MIRROR: f64 = 1e-8;
 
 /// Coordinates in the first cell of roughnesses. With 2, the error of E for γ = 1.501 in 32 × 32
 /// texels is 1.1e-2 instead of 7.6e-3.
 const FIRST_CELL: usize = 16;
+
+/// The same of indices, of which the smallest change shares fastest. In other cells the texels are
+/// enough: shares change least along indices.
+const FIRST_OF_INDICES: usize = 4;
 
 /// A material and a view of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +49,14 @@ pub enum Along {
         /// γ at 1.
         smallest: f64,
     },
+    /// √((η−1)/(η+1)), between its values at both ends; η is the index of the denser medium over
+    /// that of the other.
+    Index {
+        /// η at 0 and 1.
+        ends: [f64; 2],
+        /// Whether views are from inside the denser medium.
+        inside: bool,
+    },
     /// √(σ/σ_max).
     Roughness {
         /// σ_max.
@@ -51,7 +65,7 @@ pub enum Along {
     /// σ itself, up to 1.
     LinearRoughness,
     /// n, linear between two values. η is n, or 1/n seen from inside.
-    Index {
+    LinearIndex {
         /// n at 0.
         first: f64,
         /// n at 1.
@@ -68,6 +82,11 @@ pub enum Along {
     },
     /// x^¼, x = μ/(μ + κσ√(1−μ²)); made by [`Along::view`].
     View(ViewBlend),
+    /// The view from inside a medium, which crowds at the critical angle as well.
+    Critical {
+        /// The share of x^0.3, which crowds at the horizon.
+        near: f64,
+    },
     /// μ.
     Cosine {
         /// The smallest μ of a texel.
@@ -92,14 +111,33 @@ impl Along {
 
     /// Whether it is a view, which depends on the material in some coordinates.
     pub fn is_view(self) -> bool {
-        matches!(self, Self::View(_) | Self::Cosine { .. } | Self::Angle | Self::RootVersine { .. })
+        matches!(
+            self,
+            Self::View(_)
+                | Self::Critical { .. }
+                | Self::Cosine { .. }
+                | Self::Angle
+                | Self::RootVersine { .. }
+        )
     }
 
     /// Of an index, whether the dielectric is seen from inside.
     pub fn inside(self) -> Option<bool> {
         match self {
-            Self::Index { inside, .. } | Self::Contrast { inside, .. } => Some(inside),
+            Self::Index { inside, .. }
+            | Self::LinearIndex { inside, .. }
+            | Self::Contrast { inside, .. } => Some(inside),
             _ => None,
+        }
+    }
+
+    /// The name of its quantity in shaders and C.
+    pub(super) fn argument(self) -> &'static str {
+        match self {
+            Self::Shape { .. } => "gamma",
+            Self::Roughness { .. } | Self::LinearRoughness => "sigma",
+            _ if self.is_view() => "mu",
+            _ => "eta",
         }
     }
 
@@ -111,15 +149,31 @@ impl Along {
                 // Exactly the γ that was asked for, without rounding.
                 place.gamma = if c == 1.0 { smallest } else { LogShape::BAKED.quantity(c * last) };
             }
+            Self::Index { ends, inside } => {
+                let [first, last] = ends.map(index_coordinate);
+                let square = (first + c * (last - first)).powi(2);
+                // Exactly the ends that were asked for, without rounding.
+                let eta = match c {
+                    0.0 => ends[0],
+                    1.0 => ends[1],
+                    _ => (1.0 + square) / (1.0 - square),
+                };
+                place.eta = Some(if inside { 1.0 / eta } else { eta });
+            }
             Self::Roughness { largest } => place.sigma = (largest * c * c).max(MIRROR),
             Self::LinearRoughness => place.sigma = c.max(MIRROR),
             Self::View(view) => {
                 place.cos = Some(view.prepare(place.sigma, place.gamma).quantity(c));
             }
+            Self::Critical { near } => {
+                let (material, eta) = (*place, place.eta.expect("an interface"));
+                let below = |cos: f64| critical_coordinate(near, &material, eta, cos) < c;
+                place.cos = Some(if c == 1.0 { 1.0 } else { first_not(below) });
+            }
             Self::Cosine { least } => place.cos = Some(c.max(least)),
             Self::Angle => place.cos = Some(if c == 1.0 { 0.0 } else { (FRAC_PI_2 * c).cos() }),
             Self::RootVersine { least } => place.cos = Some((1.0 - c * c).max(least)),
-            Self::Index { first, last, inside } => {
+            Self::LinearIndex { first, last, inside } => {
                 place.eta = Some(eta(first + (last - first) * c, inside));
             }
             Self::Contrast { most, inside } => {
@@ -138,13 +192,20 @@ impl Along {
                 let coordinate = |gamma| LogShape::BAKED.coordinate(gamma);
                 coordinate(place.gamma) / coordinate(smallest)
             }
+            Self::Index { ends, .. } => {
+                let [first, last] = ends.map(index_coordinate);
+                (index_coordinate(place.eta.expect("an interface")) - first) / (last - first)
+            }
             Self::Roughness { largest } => (place.sigma / largest).sqrt(),
             Self::LinearRoughness => place.sigma,
             Self::View(view) => view.prepare(place.sigma, place.gamma).coordinate(cos()),
+            Self::Critical { near } => {
+                critical_coordinate(near, place, place.eta.expect("an interface"), cos())
+            }
             Self::Cosine { .. } => cos(),
             Self::Angle => cos().acos() / FRAC_PI_2,
             Self::RootVersine { .. } => (1.0 - cos()).sqrt(),
-            Self::Index { first, last, inside } => (index(inside) - first) / (last - first),
+            Self::LinearIndex { first, last, inside } => (index(inside) - first) / (last - first),
             Self::Contrast { inside, .. } => {
                 let n = index(inside);
                 ((n - 1.0) / (n + 1.0)).max(0.0).sqrt()
@@ -156,6 +217,18 @@ impl Along {
 /// η of n, and n of η: the reciprocal seen from inside.
 fn eta(n: f64, inside: bool) -> f64 {
     if inside { n.recip() } else { n }
+}
+
+/// The smallest number in [0, 1] that is not below what is sought.
+fn first_not(below: impl Fn(f64) -> bool) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    loop {
+        let middle = 0.5 * (low + high);
+        if !(middle > low && middle < high) {
+            return high;
+        }
+        if below(middle) { low = middle } else { high = middle }
+    }
 }
 
 /// An axis of a texture. A filter clamps to the first and the last texel, and is linear between.
@@ -184,8 +257,9 @@ impl TexelAxis {
         matches!(self.along, Along::Shape { .. })
     }
 
-    /// Whether a texture is made of slices along it, of a shape or of an index each.
-    pub fn is_of_slices(&self) -> bool {
+    /// Whether it is the slow axis of a volume, of shapes or indices, of which certificates take
+    /// slices.
+    pub fn is_sliced(&self) -> bool {
         self.is_of_shapes() || self.along.inside().is_some()
     }
 
@@ -207,8 +281,12 @@ impl TexelAxis {
     pub fn dense(&self, per_cell: usize) -> Vec<f64> {
         let mut all = vec![0.0];
         let mut cell = |from: f64, to: f64| {
-            let smooth = all.len() == 1 && matches!(self.along, Along::Roughness { .. });
-            let parts = if smooth { FIRST_CELL } else { per_cell };
+            let parts = match self.along {
+                Along::Roughness { .. } if all.len() == 1 => FIRST_CELL,
+                Along::Index { .. } if all.len() == 1 => FIRST_OF_INDICES,
+                Along::Index { .. } => 1,
+                _ => per_cell,
+            };
             let part = |i: usize| from + (to - from) * i as f64 / parts as f64;
             all.extend((1..=parts).map(part));
         };

@@ -5,7 +5,8 @@ use microfacet_baker::progress::Stage;
 use microfacet_core::Masking;
 use microfacet_model::ParameterError;
 
-use super::axis::{AXES, Place, TexelAxis, array, coordinates};
+use super::axis::{AXES, Along, Place, TexelAxis, array, coordinates};
+use super::edge::Edge;
 use super::fit::{Filter, Tap};
 use super::truth::{Channel, FINEST, FINEST_OF_INTERFACES, Truth, truths};
 use super::{Texture, TextureSpec};
@@ -16,6 +17,8 @@ const PER_TEXEL: usize = 2;
 const EVENLY: [[usize; 2]; 2] = [[2_000, 200_000], [50, 6_000]];
 /// Points in each cell along edges, where only half as many texels are near.
 const PER_EDGE: usize = 6;
+/// The same along lines within the domain.
+const PER_LINE: usize = 3;
 /// Points within each cell along γ: the texel and the middle, where linear interpolation errs most
 /// in either direction, and in turn one of `BETWEEN`.
 const WITHIN: [f64; 2] = [0.0, 0.5];
@@ -112,7 +115,7 @@ impl Checks {
         let average = usize::from(!spec.is_directional());
         let [fewest, most] = EVENLY[average];
         let count = (PER_TEXEL * filter.texels).clamp(fewest, most);
-        let shapes = axes.iter().find(|axis| axis.is_of_slices());
+        let shapes = axes.iter().find(|axis| axis.is_sliced());
         let slices = shapes.map_or(vec![f64::NAN], slices);
         let share = count / slices.len();
         let of = |at: [f64; AXES]| match spec.place(&at) {
@@ -132,6 +135,10 @@ impl Checks {
             for &slice in &slices {
                 points.extend(edges(axes, slice, PER_EDGE).map(of));
                 points.extend(spec.horizon(&filter, slice, PER_EDGE));
+                points.extend(
+                    lines(spec, slice)
+                        .map(|place| (place, filter.tap(axes, &coordinates(axes, &place)))),
+                );
             }
         }
         let (places, taps): (Vec<Place>, Vec<Tap>) = points.into_iter().unzip();
@@ -146,6 +153,13 @@ impl Checks {
         let tap = |known: &Known| filter.tap(&spec.axes, &coordinates(&spec.axes, &known.place));
         let points = known.iter().map(|known| (*known, tap(known))).collect();
         Self { filter, points, even: known.len() }
+    }
+
+    /// The errors of a texture along each named edge of its domain.
+    pub fn along_edges(&self, texture: &Texture) -> Vec<(Edge, Vec<Deviation>)> {
+        let spec = &texture.spec;
+        let along = |edge: Edge| (edge, self.of(texture, |place| edge.holds(spec, place)));
+        Edge::of(spec).into_iter().map(along).filter(|(_, errors)| !errors.is_empty()).collect()
     }
 
     /// The errors of a texture at the points that `counts` counts.
@@ -186,6 +200,24 @@ impl Checks {
     }
 }
 
+/// Places on the lines within the domain of an interface, in the slice of an index.
+fn lines(spec: &TextureSpec, slice: f64) -> impl Iterator<Item = Place> {
+    let rough = spec.axes.iter().find(|axis| matches!(axis.along, Along::Roughness { .. }));
+    let steps = rough.map_or(Vec::new(), |axis| axis.dense(PER_LINE));
+    let at = move |rough: f64| {
+        let of = |axis: &TexelAxis| match axis.along {
+            Along::Roughness { .. } => rough,
+            _ if axis.is_sliced() => slice,
+            _ => 1.0,
+        };
+        let material = spec.place(&array(spec.axes.iter().map(of)));
+        let on = move |edge: Edge| material.eta.and_then(|eta| edge.cos(eta));
+        let views = Edge::WITHIN.into_iter().filter_map(on);
+        views.map(move |cos| Place { cos: Some(cos.max(spec.least_cos)), ..material })
+    };
+    steps.into_iter().flat_map(at)
+}
+
 /// From a function that reads a channel: the value of a quantity, and its true value.
 type Reading = Box<dyn Fn(&dyn Fn(usize) -> f64, Truth) -> (f64, f64)>;
 
@@ -195,6 +227,13 @@ fn quantities(channels: &[Channel]) -> Vec<(&'static str, Reading)> {
     for (i, &channel) in channels.iter().enumerate() {
         match channel {
             Channel::Empty | Channel::Excess | Channel::TintExcess | Channel::RootLost => {}
+            Channel::ReflectedExcess => {
+                all.push(("reflected", Box::new(move |read, t| (read(i) + t.smooth, t.shares[0]))));
+            }
+            Channel::TransmittedExcess => {
+                let of = move |read: &dyn Fn(usize) -> f64, t: Truth| read(i) + (1.0 - t.smooth);
+                all.push(("transmitted", Box::new(move |read, t| (of(read, t), t.shares[1]))));
+            }
             // The error of 1 − E is that of E.
             Channel::Lost => all.push(("e", Box::new(move |read, t| (1.0 - read(i), t.e)))),
             Channel::NotReflected => {
@@ -212,9 +251,14 @@ fn quantities(channels: &[Channel]) -> Vec<(&'static str, Reading)> {
         all.push(("bias", Box::new(move |read, t| (bias(read, t), t.bias))));
         all.push(("scale", Box::new(move |read, t| (read(e) - bias(read, t), t.e - t.bias))));
     }
-    let [reflected, transmitted] = [Channel::Reflected, Channel::Transmitted].map(find);
-    if let (Some(r), Some(t)) = (reflected, transmitted) {
-        all.push(("e", Box::new(move |read, truth| (read(r) + read(t), truth.e))));
+    let shares = [
+        ([Channel::Reflected, Channel::Transmitted], 0.0),
+        ([Channel::ReflectedExcess, Channel::TransmittedExcess], 1.0),
+    ];
+    for (both, more) in shares {
+        if let [Some(r), Some(t)] = both.map(find) {
+            all.push(("e", Box::new(move |read, truth| (read(r) + read(t) + more, truth.e))));
+        }
     }
     // Engines read E as the sum of both.
     if let (Some(scale), Some(bias), None) = (scale, bias, e) {
@@ -223,9 +267,14 @@ fn quantities(channels: &[Channel]) -> Vec<(&'static str, Reading)> {
     all
 }
 
-/// Coordinates of the shapes that are checked: three in each cell, and the end.
+/// Coordinates of the slices that are checked: three in each cell, and the end; of indices, along
+/// which shares change least, the middle of each cell, and both ends.
 fn slices(axis: &TexelAxis) -> Vec<f64> {
     let cells = axis.texels.windows(2).zip(BETWEEN.into_iter().cycle());
+    if !axis.is_of_shapes() {
+        let middle = |(pair, _): (&[f64], f64)| 0.5 * (pair[0] + pair[1]);
+        return cells.map(middle).chain([0.0, 1.0]).collect();
+    }
     let cell = |(pair, between): (&[f64], f64)| {
         let at = |within: f64| pair[0] + within * (pair[1] - pair[0]);
         [at(WITHIN[0]), at(WITHIN[1]), at(between)]
@@ -236,7 +285,7 @@ fn slices(axis: &TexelAxis) -> Vec<f64> {
 /// A point of an even sequence, in the slice of a shape.
 fn even(axes: &[TexelAxis], slice: f64, i: usize) -> [f64; AXES] {
     let mut steps = EVEN.iter();
-    let mut along = |axis: &TexelAxis| match axis.is_of_slices() {
+    let mut along = |axis: &TexelAxis| match axis.is_sliced() {
         true => slice,
         false => (0.5 + i as f64 * steps.next().expect("two axes beside slices")).fract(),
     };
@@ -251,7 +300,7 @@ fn edges(axes: &[TexelAxis], slice: f64, per_cell: usize) -> impl Iterator<Item 
     let point = move |along: f64, first: bool| {
         let mut nth = 0;
         array(axes.iter().map(|axis| {
-            if axis.is_of_slices() {
+            if axis.is_sliced() {
                 return slice;
             }
             nth += 1;

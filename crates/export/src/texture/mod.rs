@@ -1,5 +1,6 @@
 //! Directional albedos as textures that a shader reads with the filter of its hardware, in one
-//! line: one shape γ, or a range of them as a volume, and the averages over all views.
+//! line: one shape γ, or a range of them as a volume, and the averages over all views; and the
+//! shares of light that interfaces reflect and transmit, over indices of refraction.
 //!
 //! The coordinate of the view follows the roughness, so that E is smooth where it changes within
 //! the roughness of the horizon. Up to [`MOST_FITTED`] texels the values are not the model's: they
@@ -8,10 +9,12 @@
 
 mod axis;
 mod certificate;
-mod domain;
+mod check;
+mod edge;
 pub mod engine;
 mod file;
 mod fit;
+mod interface;
 mod shader;
 mod truth;
 
@@ -25,18 +28,20 @@ use rayon::prelude::*;
 
 pub use axis::{Along, Place, TexelAxis};
 pub use certificate::{Checks, Deviation, Known, known};
-pub use domain::{MOST_TEXELS, SIZES, check};
+pub use check::{MOST_TEXELS, SIZES, check};
+use check::{check_size, check_surface};
+pub use edge::Edge;
 pub(crate) use file::ktx2::encode_texels;
 pub use file::{BeforeRounding, Format, Made, files};
+pub use interface::{ETA, Indices, check_interface};
 pub use shader::coordinates as shader_coordinates;
 pub use shader::{Lines, shader_lines};
 pub use truth::{Channel, Truth};
 
 pub use axis::place;
 use axis::{AXES, array, coordinates};
-use domain::check_size;
 use fit::{Filter, Tap, Target, fit};
-use truth::{COARSEST, FINEST, FINEST_OF_INTERFACES, truths};
+use truth::{COARSEST, COARSEST_OF_INTERFACES, FINEST, FINEST_OF_INTERFACES, truths};
 
 /// Textures of more texels than this hold the values at the texels. Errors fall with the square of
 /// their number along an axis, from 5.2e-3 for γ = ∞ in 32 × 32 texels, and a fit, whose memory
@@ -48,13 +53,16 @@ pub const LEAST_COS: f64 = 1e-4;
 /// interpolation of a smooth function errs less. With 3, the error of E for γ = ∞ in 32 × 32 texels
 /// is 2.9e-3 instead of 2.6e-3.
 const PER_CELL: usize = 2;
+/// The same along the smallest cosine that counts, of interfaces, whose coordinate has few cells
+/// there. With 2, what texels hold beyond that cosine is poorly determined: the largest error from
+/// inside glass in 32 × 32 texels, in a coordinate with x^⅓, was 5.1e-3 instead of 3.2e-3.
+const PER_HORIZON: usize = 6;
 /// The same along coordinates of engines, in which E of smooth surfaces changes within a cell. With
 /// 2, the table of Cycles errs by 9.1e-2 instead of 4.9e-2.
 const PER_CELL_OF_ENGINES: usize = 3;
-/// Seconds that one albedo, and one average, take on one processor in 32 × 32 texels; only their
-/// ratio matters, for the progress that is shown.
-const SECONDS: [f64; 2] = [7e-5, 1.2e-3];
-const SECONDS_OF_INTERFACES: [f64; 2] = [1e-3, 2.8e-2];
+/// Seconds that one albedo of a mirror and of an interface take on one processor, and one average,
+/// in 32 texels along each axis; only their ratio matters, for the progress that is shown.
+const SECONDS: [[f64; 2]; 2] = [[7e-5, 1e-3], [1.2e-3, 2e-2]];
 
 /// The shapes of a texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -159,7 +167,8 @@ impl TextureSpec {
     /// The texture of its averages, by another name.
     pub fn average(&self, name: &str) -> Self {
         let axes = self.axes.iter().filter(|axis| !axis.along.is_view()).cloned().collect();
-        Self { name: name.into(), axes, ..self.clone() }
+        let channels = self.channels.iter().map(|channel| channel.of_averages()).collect();
+        Self { name: name.into(), axes, channels, ..self.clone() }
     }
 
     /// The place at one coordinate along each axis.
@@ -187,19 +196,27 @@ impl TextureSpec {
         let texels: f64 = self.axes.iter().map(|axis| axis.len() as f64).product();
         let per_cell = self.per_cell() as f64;
         let points = if self.fitted { per_cell.powi(self.axes.len() as i32) } else { 1.0 };
-        let each = if self.is_of_interfaces() { SECONDS_OF_INTERFACES } else { SECONDS };
-        each[usize::from(!self.is_directional())] * texels * (points + 1.0)
+        let [mirror, interface] = SECONDS[usize::from(!self.is_directional())];
+        let one = if self.is_of_interfaces() { interface } else { mirror };
+        one * texels * (points + 1.0)
     }
 
     /// The error that the model's values aim at: the finest where they are the texels. Where texels
     /// are fitted to them, or judged by them, 3e-2/n² and of averages 1e-1/n², with n texels along
-    /// the longest axis: even those of GGX up to σ = 1 err by 0.6/n², and by 0.16/n².
+    /// the longest axis: even those of GGX up to σ = 1 err by 0.6/n², and by 0.16/n². Textures of
+    /// interfaces err by more than 1/n², and need a tenth of that.
     fn tolerance(&self) -> f64 {
         let average = usize::from(!self.is_directional());
         let longest = self.axes.iter().map(TexelAxis::len).max().unwrap_or(1);
-        let loose = [3e-2, 1e-1][average] / (longest * longest) as f64;
-        let finest = if self.is_of_interfaces() { FINEST_OF_INTERFACES } else { FINEST }[average];
-        if self.fitted { loose.clamp(finest, COARSEST[average]) } else { finest }
+        let of_interfaces = self.is_of_interfaces();
+        let share = if of_interfaces { [3e-1, 1.0] } else { [3e-2, 1e-1] };
+        let loose = share[average] / (longest * longest) as f64;
+        let [finest, coarsest] = match of_interfaces {
+            true => [FINEST_OF_INTERFACES, COARSEST_OF_INTERFACES],
+            false => [FINEST, COARSEST],
+        };
+        let [finest, coarsest] = [finest[average], coarsest[average]];
+        if self.fitted { loose.clamp(finest, coarsest) } else { finest }
     }
 
     /// The model's values at places, as [`truths`].
@@ -328,22 +345,26 @@ impl TextureSpec {
         };
         let mut points: Vec<_> = (0..grid.len()).into_par_iter().map(of).collect();
         if self.is_directional() {
-            let slices = self.axes.iter().find(|axis| axis.is_of_slices());
-            for slice in slices.map_or(vec![f64::NAN], dense) {
-                points.extend(self.horizon(&filter, slice, self.per_cell()));
+            let sliced = self.axes.iter().find(|axis| axis.is_sliced());
+            let along_horizon = match self.per_cell() {
+                PER_CELL if self.is_of_interfaces() => PER_HORIZON,
+                per_cell => per_cell,
+            };
+            for slice in sliced.map_or(vec![f64::NAN], dense) {
+                points.extend(self.horizon(&filter, slice, along_horizon));
             }
         }
         points
     }
 
     /// Points of the smallest cosine that counts, from the smoothest surface to the roughest of one
-    /// shape or index: `per_cell` or more in each cell that they run through, along either axis. On
-    /// smooth surfaces they run through all coordinates of the view.
+    /// slice: `per_cell` or more in each cell that they run through, along either axis. On smooth
+    /// surfaces they run through all coordinates of the view.
     fn horizon(&self, filter: &Filter, slice: f64, per_cell: usize) -> Vec<(Place, Tap)> {
         let of = |rough: f64| {
             let at = array(self.axes.iter().map(|axis| match axis {
-                axis if axis.is_of_slices() => slice,
-                axis if axis.along.is_view() => 0.0,
+                sliced if sliced.is_sliced() => slice,
+                view if view.along.is_view() => 0.0,
                 _ => rough,
             }));
             let place = self.place(&at);

@@ -5,12 +5,17 @@ use std::f64::consts::FRAC_2_PI;
 use microfacet_tables::axis::LogShape;
 
 use super::axis::{Along, TexelAxis};
+use super::interface::{KNEE, POWER, WIDTH, index_coordinate};
 use super::{Channel, TextureSpec};
 use crate::numbers::single;
 
+/// What keeps 0/0 from views of a smooth interface at the critical angle.
+const TINY: f64 = 1e-20;
+
 /// The same line in three languages, where `lut_texture` is the texture `lut`, read with a linear
 /// filter that clamps. Variables are `sigma`, `mu`, the cosine of the view, in [1e-4, 1], and
-/// `gamma`.
+/// `gamma`; of functions, which read interfaces, `eta`, the index beyond over that on the side of
+/// the view.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Lines {
     /// GLSL, for any version with `texture`.
@@ -58,6 +63,9 @@ pub fn shader_lines(spec: &TextureSpec) -> Lines {
     } else {
         ("1.0 / 21.0", "_average")
     };
+    if spec.side().is_some() {
+        return functions(spec);
+    }
     let line = |one: &str, two: &str, read: String| match spec.channels[..] {
         [Channel::E, Channel::Excess] => {
             format!(
@@ -83,6 +91,52 @@ pub fn shader_lines(spec: &TextureSpec) -> Lines {
     }
 }
 
+/// Functions that read both shares of an interface, each in one line: what they declare cannot be
+/// declared twice where a shader reads both sides.
+fn functions(spec: &TextureSpec) -> Lines {
+    let name = &spec.name;
+    let arguments: Vec<&str> = spec.axes.iter().map(|axis| axis.along.argument()).collect();
+    let line = |head: String, local: &str, pair: &str, read: String| {
+        let mut body = String::new();
+        let read = if spec.is_directional() {
+            if let Some(eta) = spec.eta {
+                body += &format!("{local} eta = {}; ", Dialect::Shader.number(eta));
+            }
+            body += &Dialect::Shader.interface(local);
+            format!("{pair}(f, 1.0 - f) + {read}")
+        } else {
+            read
+        };
+        format!("{head} {{ {body}return {read}.rg; }}")
+    };
+    let texture = format!("{name}_texture");
+    let at = |vector, suffix| coordinates(&spec.axes, spec.gamma, [vector, suffix]);
+    let typed = |word: &str| {
+        arguments.iter().map(|name| format!("{word} {name}")).collect::<Vec<_>>().join(", ")
+    };
+    let after: Vec<String> = arguments.iter().map(|name| format!("{name}: f32")).collect();
+    Lines {
+        glsl: line(
+            format!("vec2 {name}({})", typed("float")),
+            "float",
+            "vec2",
+            format!("texture({texture}, {})", at("vec", "")),
+        ),
+        hlsl: line(
+            format!("float2 {name}({})", typed("float")),
+            "float",
+            "float2",
+            format!("{texture}.SampleLevel(linear_clamp, {}, 0)", at("float", "")),
+        ),
+        wgsl: line(
+            format!("fn {name}({}) -> vec2f", after.join(", ")),
+            "let",
+            "vec2f",
+            format!("textureSampleLevel({texture}, linear_clamp, {}, 0.0)", at("vec", "f")),
+        ),
+    }
+}
+
 /// How a language writes functions and numbers.
 #[derive(Clone, Copy)]
 pub(super) enum Dialect {
@@ -96,7 +150,7 @@ impl Dialect {
     fn function(self, name: &str) -> String {
         match self {
             Self::Shader => name.into(),
-            Self::C if name == "max" => "fmaxf".into(),
+            Self::C if ["max", "abs"].contains(&name) => format!("f{name}f"),
             Self::C => format!("{name}f"),
         }
     }
@@ -107,16 +161,58 @@ impl Dialect {
         single(x as f32) + suffix
     }
 
+    /// Declarations of `rim` and `past`, by which views of an interface differ from those of a
+    /// mirror, and of `f`, the softened reflectance of a smooth one.
+    pub(super) fn interface(self, local: &str) -> String {
+        let [sqrt, max, abs] = ["sqrt", "max", "abs"].map(|name| self.function(name));
+        let [zero, half, one] = [0.0, 0.5, 1.0].map(|x| self.number(x));
+        let tiny = self.number(TINY);
+        let declared = [
+            ("rim", format!("sigma * mu * {sqrt}({max}({zero}, {one} - mu * mu))")),
+            ("past", format!("(eta - {one}) * (eta + {one}) + mu * mu")),
+            (
+                "g",
+                format!(
+                    "{sqrt}({max}({zero}, past) + {half} * rim * rim / ({abs}(past) + rim + {tiny}))"
+                ),
+            ),
+            ("a", "(mu - g) / (mu + g)".into()),
+            ("b", format!("(mu * (mu + g) - {one}) / (mu * (g - mu) + {one})")),
+            ("f", format!("{half} * a * a * ({one} + b * b)")),
+        ];
+        declared.map(|(name, value)| format!("{local} {name} = {value}; ")).concat()
+    }
+
     /// A coordinate as an expression of `gamma`, `sigma` and `mu`.
     pub(super) fn coordinate(self, along: Along, gamma: f64) -> String {
         let number = |x| self.number(x);
-        let [sqrt, pow, log, max] = ["sqrt", "pow", "log", "max"].map(|name| self.function(name));
+        let [sqrt, pow, log, max, abs] =
+            ["sqrt", "pow", "log", "max", "abs"].map(|name| self.function(name));
         let [zero, one, two, three, quarter] = [0.0, 1.0, 2.0, 3.0, 0.25].map(number);
         match along {
             Along::Shape { smallest } => {
                 let [scale, last] =
                     [LogShape::BAKED.scale, LogShape::BAKED.coordinate(smallest)].map(number);
                 format!("{log}({one} + {scale} / ({two} * gamma - {three})) / {last}")
+            }
+            Along::Index { ends, .. } => {
+                let [first, last] = ends.map(index_coordinate);
+                let v = format!("{sqrt}({abs}(eta - {one}) / (eta + {one}))");
+                let scale = number(1.0 / (last - first));
+                match first {
+                    0.0 => format!("{v} * {scale}"),
+                    _ => format!("({v} - {}) * {scale}", number(first)),
+                }
+            }
+            Along::Critical { near } => {
+                let [step, near, power, width, tiny] =
+                    [0.5 * (1.0 - near), near, POWER, WIDTH, TINY].map(number);
+                let knee = number(KNEE[0] + KNEE[1] / (2.0 * gamma - 3.0));
+                let sin = format!("{sqrt}({max}({zero}, {one} - mu * mu))");
+                format!(
+                    "{near} * {pow}(mu / (mu + {knee} * sigma * {sin}), {power}) + \
+                     {step} * ({one} + past / ({abs}(past) + {width} * rim + {tiny}))"
+                )
             }
             Along::Roughness { largest: 1.0 } => format!("{sqrt}(sigma)"),
             Along::Roughness { largest } => format!("{sqrt}(sigma / {})", number(largest)),
@@ -136,7 +232,7 @@ impl Dialect {
                 format!("{}(mu) * {}", self.function("acos"), number(FRAC_2_PI))
             }
             Along::RootVersine { .. } => format!("{sqrt}({max}({zero}, {one} - mu))"),
-            Along::Index { first, last, inside } => {
+            Along::LinearIndex { first, last, inside } => {
                 let n = if inside { format!("{one} / eta") } else { "eta".into() };
                 format!("({n} - {}) / {}", number(first), number(last - first))
             }

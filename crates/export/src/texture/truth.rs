@@ -13,6 +13,7 @@ use microfacet_model::{AlbedoIntegrator, ParameterError, Shape};
 use rayon::prelude::*;
 
 use super::axis::Place;
+use super::interface::soft_reflectance;
 
 /// The smallest errors that the quadrature aims at, of albedos and of averages, which err by less
 /// than a hundredth of that.
@@ -21,6 +22,8 @@ pub(super) const FINEST: [f64; 2] = [1e-7, 3e-6];
 pub(super) const FINEST_OF_INTERFACES: [f64; 2] = [1e-5, 3e-5];
 /// The largest ones, for textures of few texels.
 pub(super) const COARSEST: [f64; 2] = [3e-5, 1e-4];
+/// The same of interfaces, whose textures are volumes of many points.
+pub(super) const COARSEST_OF_INTERFACES: [f64; 2] = [3e-4, 1e-3];
 
 /// What a channel of a texture holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -45,6 +48,10 @@ pub enum Channel {
     Reflected,
     /// The share of light that an interface transmits.
     Transmitted,
+    /// What the reflected share exceeds that of a smooth interface by, softened by the roughness.
+    ReflectedExcess,
+    /// The same of the transmitted share.
+    TransmittedExcess,
     /// One minus the share that is reflected.
     NotReflected,
     /// A channel of an engine that is no albedo of this family: 0.
@@ -52,6 +59,15 @@ pub enum Channel {
 }
 
 impl Channel {
+    /// What a texture of averages has in its place. Averages of both shares vary smoothly.
+    pub(super) fn of_averages(self) -> Self {
+        match self {
+            Self::ReflectedExcess => Self::Reflected,
+            Self::TransmittedExcess => Self::Transmitted,
+            other => other,
+        }
+    }
+
     /// Its name in files.
     pub const fn name(self) -> &'static str {
         match self {
@@ -65,6 +81,8 @@ impl Channel {
             Self::Tint => "tint",
             Self::Reflected => "reflected",
             Self::Transmitted => "transmitted",
+            Self::ReflectedExcess => "reflected_excess",
+            Self::TransmittedExcess => "transmitted_excess",
             Self::NotReflected => "one_minus_reflected",
             Self::Empty => "empty",
         }
@@ -73,7 +91,9 @@ impl Channel {
     /// The range of its values. A fit may exceed it, which would make a loss negative.
     pub(super) fn range(self) -> [f64; 2] {
         match self {
-            Self::Excess | Self::TintExcess => [-1.0, 1.0],
+            Self::Excess | Self::TintExcess | Self::ReflectedExcess | Self::TransmittedExcess => {
+                [-1.0, 1.0]
+            }
             _ => [0.0, 1.0],
         }
     }
@@ -90,6 +110,8 @@ impl Channel {
             Self::Tint => truth.tint / F82_SCALE,
             Self::Reflected => truth.shares[0],
             Self::Transmitted => truth.shares[1],
+            Self::ReflectedExcess => truth.shares[0] - truth.smooth,
+            Self::TransmittedExcess => truth.shares[1] - (1.0 - truth.smooth),
             Self::NotReflected => 1.0 - truth.shares[0],
             Self::Empty => 0.0,
         }
@@ -109,6 +131,9 @@ pub struct Truth {
     pub tint: f64,
     /// The bias and the moment of the tint of a mirror, (1−μ)⁵ and 7⁷/6⁶ μ(1−μ)⁶, or averages.
     pub mirror: [f64; 2],
+    /// The reflectance of a smooth interface, softened by the roughness; NaN of a mirror and of
+    /// averages.
+    pub smooth: f64,
 }
 
 impl Truth {
@@ -116,12 +141,17 @@ impl Truth {
     pub(crate) fn new(cos: Option<f64>, [e, bias, tint]: [f64; 3]) -> Self {
         let of_view = |cos| [schlick_weight(cos), f82_weight(cos)];
         let mirror = cos.map_or([SCHLICK_AVERAGE, F82_AVERAGE], of_view);
-        Self { e, shares: [e, 0.0], bias, tint, mirror }
+        Self { e, shares: [e, 0.0], bias, tint, mirror, smooth: f64::NAN }
     }
 
-    /// The shares reflected and transmitted by an interface.
-    fn of_interface(cos: Option<f64>, shares: [f64; 2]) -> Self {
-        Self { shares, ..Self::new(cos, [shares.iter().sum(), f64::NAN, f64::NAN]) }
+    /// The shares reflected and transmitted by an interface of index η.
+    fn of_interface(place: &Place, eta: f64, shares: [f64; 2]) -> Self {
+        let smooth = place.cos.map(|cos| soft_reflectance(eta, place.sigma, cos));
+        Self {
+            shares,
+            smooth: smooth.unwrap_or(f64::NAN),
+            ..Self::new(place.cos, [shares.iter().sum(), f64::NAN, f64::NAN])
+        }
     }
 }
 
@@ -161,7 +191,7 @@ pub(super) fn truths(
                     Some(cos) => integrator.interface(place.sigma, cos, interface)?,
                     None => integrator.interface_average(place.sigma, interface)?,
                 };
-                Truth::of_interface(place.cos, shares.of(masking))
+                Truth::of_interface(&place, eta, shares.of(masking))
             }
         };
         stage.step();

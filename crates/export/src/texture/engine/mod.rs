@@ -59,7 +59,7 @@ fn ends<const N: usize>(along: [Along; N], size: &[usize]) -> Vec<TexelAxis> {
 
 /// n between two values, of a dielectric seen from inside or from outside.
 const fn index([first, last]: [f64; 2], inside: bool) -> Along {
-    Along::Index { first, last, inside }
+    Along::LinearIndex { first, last, inside }
 }
 
 /// Baked down to 1e-4, and up to a contrast of 0.99, which stands for 1.

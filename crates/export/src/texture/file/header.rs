@@ -28,6 +28,12 @@ pub(super) fn encode(made: &Made) -> String {
     for axis in &spec.axes {
         let _ = match axis.along {
             Along::Roughness { largest } => writeln!(text, "   sigma in [0, {largest}]."),
+            Along::Index { ends: [low, high], inside: false } => {
+                writeln!(text, "   eta in [{low}, {high}].")
+            }
+            Along::Index { ends: [low, high], inside: true } => {
+                writeln!(text, "   eta in [1/{high}, 1/{low}].")
+            }
             Along::Shape { smallest } => writeln!(text, "   gamma in [{smallest}, inf]."),
             _ => Ok(()),
         };
@@ -64,17 +70,22 @@ fn function(made: &Made, channels: usize, guard: &str) -> String {
     let (mut arguments, mut clamps) = (Vec::new(), String::new());
     let (mut coordinates, mut counts) = (Vec::new(), Vec::new());
     for axis in &spec.axes {
-        let (argument, least, most) = match axis.along {
-            Along::Shape { smallest } => ("gamma", smallest, "INFINITY".into()),
-            Along::Roughness { largest } => ("sigma", 0.0, number(largest)),
-            Along::LinearRoughness => ("sigma", 0.0, number(1.0)),
-            Along::Index { inside: true, .. } | Along::Contrast { inside: true, .. } => {
-                ("eta", 0.0, number(1.0))
+        let argument = axis.along.argument();
+        let (least, most) = match axis.along {
+            Along::Shape { smallest } => (smallest, "INFINITY".into()),
+            Along::Index { ends: [low, high], inside: false } => (low, number(high)),
+            Along::Index { ends: [low, high], inside: true } => (1.0 / high, number(1.0 / low)),
+            Along::LinearIndex { inside: true, .. } | Along::Contrast { inside: true, .. } => {
+                (0.0, number(1.0))
             }
-            Along::Index { .. } | Along::Contrast { .. } => ("eta", 1.0, "INFINITY".into()),
-            Along::View(_) | Along::Cosine { .. } | Along::Angle | Along::RootVersine { .. } => {
-                ("mu", spec.least_cos, number(1.0))
-            }
+            Along::LinearIndex { .. } | Along::Contrast { .. } => (1.0, "INFINITY".into()),
+            Along::Roughness { largest } => (0.0, number(largest)),
+            Along::LinearRoughness => (0.0, number(1.0)),
+            Along::View(_)
+            | Along::Critical { .. }
+            | Along::Cosine { .. }
+            | Along::Angle
+            | Along::RootVersine { .. } => (spec.least_cos, number(1.0)),
         };
         let least = number(least);
         clamps += &format!("    {argument} = fminf(fmaxf({argument}, {least}), {most});\n");
@@ -88,7 +99,20 @@ fn function(made: &Made, channels: usize, guard: &str) -> String {
     } else {
         ("float", String::new(), "    float out[1];\n", "    return out[0];\n")
     };
+    let interface = spec.side().is_some();
+    let sums = interface && spec.is_directional();
+    let mut locals = String::new();
+    if let (Some(eta), true) = (spec.eta, sums) {
+        locals += &format!("    const float eta = {};\n", number(eta));
+    }
+    if sums {
+        for line in Dialect::C.interface("const float").split_inclusive("; ") {
+            locals += &format!("    {}\n", line.trim_end());
+        }
+    }
+    let first = if sums { "    out[0] += f;\n    out[1] += 1.0f - f;\n" } else { "" };
     let meaning = match (&spec.channels[..], spec.is_directional()) {
+        _ if interface => "out[0] is the share that is reflected, out[1] that transmitted,",
         ([Channel::Lost], _) => "1 - E",
         ([_], _) => "E",
         (_, true) => "out[0] is E; bias is out[1] + out[0] (1 - mu)^5, and scale E - bias,",
@@ -96,7 +120,7 @@ fn function(made: &Made, channels: usize, guard: &str) -> String {
     };
     format!(
         "/* {meaning} between\n   the texels; arguments beyond the ends, and NaN, are taken there. C99. */\n\
-         {guard}_FUNCTION {kind} {name}_read({}{parameter}) {{\n{clamps}\
+         {guard}_FUNCTION {kind} {name}_read({}{parameter}) {{\n{clamps}{locals}\
          \x20   const float c[{axes}] = {{\n        {}\n    }};\n\
          \x20   const int n[{axes}] = {{ {} }};\n\
          \x20   int first = 0, stride[{axes}], corner, axis, channel;\n\
@@ -120,7 +144,7 @@ fn function(made: &Made, channels: usize, guard: &str) -> String {
          \x20       }}\n\
          \x20       for (channel = 0; channel < {channels}; channel++)\n\
          \x20           out[channel] += weight * {name}_texels[texel * {channels} + channel];\n\
-         \x20   }}\n{result}}}\n",
+         \x20   }}\n{first}{result}}}\n",
         arguments.join(", "),
         coordinates.join(",\n        "),
         counts.join(", "),

@@ -8,7 +8,7 @@ mod npy;
 
 use half::f16;
 
-use super::{Deviation, Texture};
+use super::{Deviation, Edge, Texture};
 use crate::{ExportFile, open_exr};
 
 /// A format of files.
@@ -48,6 +48,8 @@ pub struct Made {
     pub texture: Texture,
     /// Its errors.
     pub errors: Vec<Deviation>,
+    /// Its errors along the edges of its domain that have names.
+    pub edges: Vec<(Edge, Vec<Deviation>)>,
     /// What it was before its values were rounded to 16 bits, if they were.
     pub before_rounding: Option<BeforeRounding>,
 }

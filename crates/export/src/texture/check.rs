@@ -1,4 +1,4 @@
-//! The shapes, roughnesses and sizes that textures may have.
+//! Which textures can be made.
 
 use microfacet_baker::table_spec::GAMMA_MIN;
 use microfacet_tables::SIGMA_MAX;
@@ -19,10 +19,16 @@ const MOST_GAMMA_MIN: f64 = 1e4;
 /// # Errors
 /// A message with the value, what is allowed, and what to do.
 pub fn check(shapes: Shapes, sigma_max: f64, size: &[usize]) -> Result<(), String> {
-    let (gamma, axes, form) = match shapes {
-        Shapes::One(gamma) => (gamma, 2, "SxT, as 32x32"),
-        Shapes::DownTo(gamma) => (gamma, 3, "GxSxT, as 32x64x64"),
-    };
+    check_surface(shapes, sigma_max)?;
+    match shapes {
+        Shapes::One(_) => check_size("this texture", size, 2, "SxT, as 32x32"),
+        Shapes::DownTo(_) => check_size("this volume", size, 3, "GxSxT, as 32x64x64"),
+    }
+}
+
+/// Checks the shapes and the largest roughness.
+pub(super) fn check_surface(shapes: Shapes, sigma_max: f64) -> Result<(), String> {
+    let (Shapes::One(gamma) | Shapes::DownTo(gamma)) = shapes;
     let why = if !(gamma >= GAMMA_MIN) {
         format!(
             "gamma = {gamma} is below {GAMMA_MIN}, the smallest shape that textures cover; raise it"
@@ -44,12 +50,12 @@ pub fn check(shapes: Shapes, sigma_max: f64, size: &[usize]) -> Result<(), Strin
              ask for the one shape gamma = inf"
         )
     } else {
-        return check_size("a texture of these shapes", size, axes, form);
+        return Ok(());
     };
     Err(why)
 }
 
-/// Checks the size of what `whose` names, which has `axes` axes.
+/// Checks the size of what `whose` names, which has so many axes and is written in a form.
 pub(super) fn check_size(
     whose: &str,
     size: &[usize],
