@@ -194,7 +194,7 @@ fn a_set_larger_than_the_general_one_is_called_larger() {
 fn the_figures_of_certificates_are_in_the_details() {
     let desk = Desk::new(&[]);
     let shown = desk.ok("inspect");
-    assert!(shown.lines().count() <= 36, "{shown}");
+    assert!(shown.lines().count() <= 45, "{shown}");
     let details = desk.ok("inspect --details");
     assert!(details.starts_with(shown.split("\n--details").next().unwrap()), "{details}");
     let details = flat(&details);

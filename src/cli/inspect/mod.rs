@@ -117,19 +117,12 @@ fn overview(tables: &[Table]) -> String {
     let mut rows: Vec<Vec<String>> = vec![header.into()];
     rows.extend(tables.iter().map(row));
     let mut lines = columns(&rows);
-    let widest =
-        |lines: &[String]| lines.iter().map(|line| line.chars().count()).max().unwrap_or(0);
-    if widest(&lines) > COLUMNS {
-        // Names for which the other columns leave no room have a line of their own.
-        let names: Vec<String> =
-            rows.iter_mut().map(|row| std::mem::replace(&mut row[0], "  ".into())).collect();
-        let room = (COLUMNS + 2).saturating_sub(widest(&columns(&rows)));
-        let is_long = |name: &str| name.chars().count() > room;
-        for (row, name) in rows.iter_mut().zip(&names).filter(|(_, name)| !is_long(name)) {
-            row[0].clone_from(name);
-        }
+    if lines.iter().any(|line| line.chars().count() > COLUMNS) {
+        // Long names have a line of their own.
+        let names: Vec<String> = rows.iter_mut().map(|row| std::mem::take(&mut row[0])).collect();
+        rows.iter_mut().for_each(|row| row[0] = "  ".into());
         lines = columns(&rows);
-        for (name, line) in names.iter().zip(&mut lines).filter(|(name, _)| is_long(name)) {
+        for (name, line) in names.iter().zip(&mut lines).skip(1) {
             *line = format!("{name}\n{line}");
         }
     }

@@ -51,15 +51,16 @@ pub(crate) fn bare_bytes(provenance: &Provenance) -> usize {
     let has = |convention: &str| provenance.conventions.contains_key(convention);
     let some =
         |of: &dyn Fn(&MaterialEntry) -> bool| has("albedo") && provenance.materials.iter().any(of);
-    let dielectric = |entry: &MaterialEntry| entry.fresnel.is_some_and(|f| f.indices().is_some());
+    let index = |entry: &MaterialEntry| entry.fresnel.and_then(|fresnel| fresnel.indices());
+    let dielectric = |entry: &MaterialEntry| index(entry).is_some();
+    let over_indices = |entry: &MaterialEntry| index(entry).is_some_and(|index| !index.is_point());
     let formulas = Mapping::EVERY.into_iter().filter(|mapping| match mapping {
         Mapping::LogShape(_) | Mapping::LogRoughness(_) | Mapping::ViewBlend(_) => has("albedo"),
         Mapping::Azimuth(_) => {
             some(&|entry| entry.lobes().any(|lobe| !lobe.tabulated().is_family()))
         }
-        Mapping::ReflectanceRoot | Mapping::CrossingRoot(_) | Mapping::CriticalBlend(_) => {
-            some(&dielectric)
-        }
+        Mapping::ReflectanceRoot | Mapping::CriticalBlend(_) => some(&dielectric),
+        Mapping::CrossingRoot(_) => some(&over_indices),
         _ => has("visible_slope"),
     });
     // Two quotes with their escapes, a colon and a comma.
