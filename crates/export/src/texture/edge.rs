@@ -56,7 +56,7 @@ impl Edge {
     /// The edges of textures of an interface.
     pub(super) fn of(spec: &TextureSpec) -> Vec<Self> {
         let all = if spec.side().is_some() { &Self::ALL[..] } else { &[] };
-        all.iter().copied().collect()
+        all.to_vec()
     }
 
     /// The view on a line within the domain, of a relative index η; none from outside.
