@@ -36,10 +36,10 @@ use crate::vector::vec3;
 ///
 /// Single scattering needs no table: T and R are integrated when the plastic is made, to 1e-3, and
 /// to 6e-3 for η < 1; to 0.04 and 0.2 where σx is a tenth of σy, or the lobe is tilted. A white
-/// base returns at most 1.003 of the light all the same. Compensation needs albedos of the coat: the
-/// [default set](crate::Tables::embedded) has those of common round coats, and a set baked from a
-/// recipe has those that it names, of upright lobes of the family; [`StandIn::Round`] uses those of
-/// round lobes for others that have none.
+/// base returns at most 1.003 of the light all the same. Compensation needs albedos of the coat:
+/// the [default set](crate::Tables::embedded) has those of common round coats, and a set baked from
+/// a recipe has those that it names, of upright lobes of the family; [`StandIn::Round`] uses those
+/// of round lobes for others that have none.
 ///
 /// ```
 /// # #[cfg(feature = "embedded")] {
