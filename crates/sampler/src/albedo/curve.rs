@@ -200,6 +200,10 @@ pub struct DielectricAlbedo {
 /// Directional albedo of one bounce under an exact reflectance, other than F = 1.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one is made for a material, and taken apart at once"
+)]
 pub enum FresnelAlbedo {
     /// Of a conductor: red, green and blue.
     Conductor(ViewCurve<3>),

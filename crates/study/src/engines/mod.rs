@@ -119,11 +119,14 @@ const TABLES: [What; 11] = [
     What { title: "R, cos θ ≥ 0.02, relative", relative: true, least_cos: ABOVE, ..REFLECTED },
 ];
 
+/// Places of a grid with their exact values.
+type Exact = (Grid, Vec<Known>);
+
 /// What textures are compared with: exact values by the form of masking and the side that
 /// dielectrics are seen from, and our own textures by their size.
 #[derive(Default)]
 struct Judge {
-    exact: HashMap<(&'static str, Option<bool>), (Grid, Vec<Known>)>,
+    exact: HashMap<(&'static str, Option<bool>), Exact>,
     ours: HashMap<(Vec<usize>, &'static str), Texture>,
 }
 
