@@ -1,7 +1,9 @@
 //! Climbs from the largest errors among listed points to the maxima between them, which no list
 //! meets.
 
-use super::points::{Point, are_apart, beside, has_azimuths, has_crease};
+use super::points::{
+    Point, are_apart, beside, cells_of_view, has_azimuths, has_crease, other_views,
+};
 use crate::bake::albedo::{AlbedoError, AlbedoSpec};
 
 /// The errors of all quantities at one point.
@@ -23,12 +25,20 @@ fn hills(spec: &AlbedoSpec) -> [usize; STEPS.len()] {
     if has_azimuths(spec) { HILLS_OF_AZIMUTHS } else { HILLS }
 }
 
+/// Whether climbs begin with the middles of all cells of the view, at the materials of their starts:
+/// of tables over shapes, roughnesses and indices, whose listed points are far apart. Without, an
+/// error of 1.74e-3 from inside, in the glass of the default set, was missed by 8 %.
+fn sweeps(spec: &AlbedoSpec) -> bool {
+    spec.axes.len() > 3
+}
+
 /// The largest number of points that climbs measure for one directional table of so many
 /// quantities.
 pub(super) fn count(spec: &AlbedoSpec, quantities: usize) -> usize {
     let directions = 2 * spec.axes.len() * if has_crease(spec) { 2 } else { 1 };
     let places = hills(spec).into_iter().chain(HILLS_OUTSIDE).sum::<usize>();
-    quantities * places * directions
+    let swept = if sweeps(spec) { hills(spec)[0] + HILLS_OUTSIDE[0] } else { 0 };
+    quantities * (places * directions + swept * cells_of_view(spec))
 }
 
 /// A quantity by its index, a point, and the error of the quantity at that point.
@@ -70,10 +80,15 @@ pub(super) fn climbed(
         }
     }
     let mut seen: Vec<At> = Vec::new();
-    for (step, count) in STEPS.into_iter().zip(hills) {
+    let sweep = sweeps(spec).then_some((None, hills[0]));
+    let steps = STEPS.into_iter().map(Some).zip(hills);
+    for (step, count) in sweep.into_iter().chain(steps) {
         tops = highest(&tops, count);
-        let around: Vec<Vec<Point>> =
-            tops.iter().map(|(_, point, _)| beside(spec, point, step)).collect();
+        let near = |point: &Point| match step {
+            Some(step) => beside(spec, point, step),
+            None => other_views(spec, point),
+        };
+        let around: Vec<Vec<Point>> = tops.iter().map(|(_, point, _)| near(point)).collect();
         let errors = measured(around.concat())?;
         let mut from = 0;
         let mut last = None;

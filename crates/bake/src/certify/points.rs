@@ -231,6 +231,22 @@ pub fn beside(spec: &AlbedoSpec, point: &Point, cells: f64) -> Vec<Point> {
     points
 }
 
+/// The middles of all cells of the view at the material of a point, that are promised if the point
+/// is.
+pub fn other_views(spec: &AlbedoSpec, from: &Point) -> Vec<Point> {
+    let (_, material) = from.at.split_last().expect("the view is an axis");
+    let view = ranges(spec).pop().expect("the view is an axis");
+    let mut points: Vec<Point> =
+        view.cells.iter().map(|&t| point(spec, material, View::At(t))).collect();
+    points.retain(|other| other.promised == from.promised);
+    points
+}
+
+/// The number of cells of the view.
+pub fn cells_of_view(spec: &AlbedoSpec) -> usize {
+    ranges(spec).last().map_or(0, |view| view.cells.len())
+}
+
 /// Points of surfaces smoother than the promised ones, where tails are heaviest: in the middle of
 /// the cell of the smallest γ, of every cell of σ and of every third cell of the view. None for a
 /// table without such surfaces.
