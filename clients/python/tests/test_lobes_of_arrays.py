@@ -227,9 +227,9 @@ def test_a_white_furnace_of_many_is_white():
         ),
         (
             lambda: microfacet.Dielectric(
-                microfacet.StudentT(np.array([0.4]), 2), 1.5, compensation="turquin"
+                microfacet.StudentT(np.array([0.4]), 2), 2.25, compensation="turquin"
             ),
-            ["dielectric", "1.5"],
+            ["dielectric", "2.25"],
         ),
         (lambda: microfacet.Plastic(microfacet.StudentT(np.array([0.4]), 2), 1.5, 2.0), ["base"]),
     ],

@@ -92,8 +92,8 @@ def test_lobes_say_what_they_are():
             ["sigma = [0.1, 0.3]", "[[material]]", "stand_in=True"],
         ),
         (
-            lambda: microfacet.Plastic(microfacet.StudentT(1, 2), 1.5, 0.5, compensation="turquin"),
-            ["fresnel = { dielectric = 1.5 }", "microfacet.bake"],
+            lambda: microfacet.Plastic(microfacet.StudentT(1, 2), 2.25, 0.5, compensation="turquin"),
+            ["fresnel = { dielectric = 2.25 }", "microfacet.bake"],
         ),
         (lambda: microfacet.StudentT((0.1, 0.3), 2).albedo(0.5), ["[[material]]", "stand_in=True"]),
         (lambda: microfacet.Conductor(microfacet.StudentT(0.1, 2), metal="wood"), ["wood", "gold"]),

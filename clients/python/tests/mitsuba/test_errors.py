@@ -44,7 +44,7 @@ DIELECTRIC: list[tuple[dict[str, Any], list[str]]] = [
     ({"int_ior": "treacle"}, ["int_ior = 'treacle'"]),
     ({"int_ior": 1.5, "ext_ior": 1.5}, ["1.5/1.5 = 1", "[0.001, 1000]"]),
     ({"f0": 0.5}, ["'f0'", "there are"]),
-    ({"compensation": "turquin", "int_ior": 1.5, "ext_ior": 1.0}, ["1.5"]),
+    ({"compensation": "turquin", "int_ior": 2.25, "ext_ior": 1.0}, ["2.25"]),
     (
         {"compensation": "turquin", "sigma": {"type": "checkerboard"}},
         ["sigma is a texture", "none"],
@@ -63,8 +63,8 @@ PLASTIC: list[tuple[dict[str, Any], list[str]]] = [
     ({"sigma": 20.0}, ["sigma = 20", "[0.0001, 10]"]),
     ({"sigma_u": 0.1, "sigma_v": 0.2}, ["stand_in", "sigma_u and sigma_v the same number"]),
     ({"gamma": {"type": "checkerboard"}}, ["gamma is a texture", "make gamma a number"]),
-    ({"compensation": "turquin", "int_ior": 1.5, "ext_ior": 1.0}, ["dielectric = 1.5"]),
-    ({"compensation": "kulla_conty", "int_ior": 1.5, "ext_ior": 1.0}, ["dielectric = 1.5"]),
+    ({"compensation": "turquin", "int_ior": 2.25, "ext_ior": 1.0}, ["dielectric = 2.25"]),
+    ({"compensation": "kulla_conty", "int_ior": 2.25, "ext_ior": 1.0}, ["dielectric = 2.25"]),
     (
         {"compensation": "turquin", "sigma": {"type": "checkerboard"}},
         ["sigma is a texture", "none"],
