@@ -24,7 +24,7 @@ fn the_default_set_is_reproducible() {
     assert_eq!(glass.len(), 2);
     for table in glass {
         let errors = &table.certificate.errors;
-        assert!(errors.values().all(|of| of.largest < 1.7e-3), "{errors:?}");
+        assert!(errors.values().all(|of| of.largest < 1.8e-3), "{errors:?}");
     }
 
     // The errors that the README states for the default quality.
