@@ -158,8 +158,15 @@ fn what_no_albedo_table_covers_is_refused_with_what_they_cover() {
     let message = refused(&other, 0.3, 3.0, Masking::Uncorrelated);
     assert!(message.contains("uncorrelated masking, only for height-correlated"), "{message}");
     assert!(!message.contains("gamma = 3"), "{message}");
-    let message = set.dielectric_albedo(0.3, 3.0, 1.5, Masking::Uncorrelated).unwrap_err();
-    assert!(message.to_string().contains("it holds none"), "{message}");
+    let glass = |set: &Tables| {
+        let why = set.dielectric_albedo(0.3, 3.0, 1.5, Masking::Uncorrelated).unwrap_err();
+        why.to_string()
+    };
+    let message = glass(&without(|table| table.kind.is_albedo()));
+    assert!(message.contains("it holds none"), "{message}");
+    let message = glass(&set);
+    assert!(message.contains("index [1.3, 1.7]"), "{message}");
+    assert!(message.ends_with("height-correlated masking"), "{message}");
 }
 
 #[test]
