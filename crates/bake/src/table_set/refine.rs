@@ -11,7 +11,7 @@ use crate::progress::Meter;
 /// Where only the axis of cos θ can be refined, a doubling is kept if its error is at most this
 /// share of the error before: otherwise the error has another cause, such as an axis of the
 /// material. On a smooth curve six-point polynomials would reach a sixtieth; for indices near 1
-/// (`docs/albedo.md`) 3.4e-4 falls by less than a fifth.
+/// (`docs/albedo.md`) 4.4e-4 falls by less than a fifth.
 const WORTH: f64 = 0.8;
 
 /// The certified albedo tables of a specification in several precisions.

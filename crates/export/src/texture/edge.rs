@@ -1,5 +1,7 @@
 //! The edges of the domain of a texture, by name.
 
+use microfacet_model::fresnel::Dielectric;
+
 use super::TextureSpec;
 use super::axis::{Along, MIRROR, Place, TexelAxis};
 
@@ -61,12 +63,12 @@ impl Edge {
 
     /// The view on a line within the domain, of a relative index η; none from outside.
     pub(super) fn cos(self, eta: f64) -> Option<f64> {
-        let cos = match self {
-            Self::CriticalAngle => ((1.0 - eta) * (1.0 + eta)).max(0.0).sqrt(),
-            Self::UprightFacets => eta,
-            _ => return None,
-        };
-        (eta < 1.0).then_some(cos)
+        let interface = Dielectric::new(eta).ok().filter(|_| eta < 1.0)?;
+        match self {
+            Self::CriticalAngle => Some(interface.kink()),
+            Self::UprightFacets => Some(eta),
+            _ => None,
+        }
     }
 
     /// Whether a place is on it.

@@ -9,7 +9,7 @@ use microfacet_core::Masking;
 
 use super::axis::{Along, Place, TexelAxis};
 use super::truth::Channel;
-use super::{LEAST_COS, MOST_FITTED, Shapes, TextureSpec, check_size, check_surface};
+use super::{KAPPA, LEAST_COS, MOST_FITTED, Shapes, TextureSpec, check_size, check_surface};
 
 /// The smallest and the largest index of refraction of textures, of the denser medium over that of
 /// the other. Nearer 1 the shares of views near the horizon change from those of glass to those of
@@ -28,8 +28,6 @@ pub(super) const KNEE: [f64; 2] = [6.5, 0.5];
 /// The power of x: that of E, ¼, leaves too few texels for the critical angle, and ⅓ too few for
 /// the horizon.
 pub(super) const POWER: f64 = 0.3;
-/// The same of x^¼, the coordinate of views from outside.
-const KNEE_OUTSIDE: [f64; 2] = [3.0, 0.5];
 
 /// The indices of refraction of a texture, of the denser medium over that of the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -122,7 +120,7 @@ impl TextureSpec {
             let view = if inside {
                 Along::Critical { near: near(size[size.len() - 1]) }
             } else {
-                Along::view(KNEE_OUTSIDE[0], KNEE_OUTSIDE[1])
+                Along::view(KAPPA[0], KAPPA[1])
             };
             let mut along = vec![Along::Roughness { largest: sigma_max }, view];
             let eta = match indices {

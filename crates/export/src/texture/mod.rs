@@ -116,11 +116,14 @@ pub struct TextureSpec {
     pub fitted: bool,
 }
 
-/// κ = scale + heavy/(2γ−3), as [scale, heavy]. For GGX up to σ = 1 a constant errs less.
+/// κ = scale + heavy/(2γ−3), as [scale, heavy], of the coordinate x^¼ of views.
+const KAPPA: [f64; 2] = [3.0, 0.5];
+
+/// [`KAPPA`] of a texture of E. For GGX up to σ = 1 a constant errs less.
 fn kappa(shapes: Shapes, sigma_max: f64) -> [f64; 2] {
     match shapes {
         Shapes::One(2.0) if sigma_max <= 1.0 => [4.0, 0.0],
-        _ => [3.0, 0.5],
+        _ => KAPPA,
     }
 }
 

@@ -26,7 +26,7 @@ pub(super) type At<const N: usize> = ([f64; N], u32);
 
 /// 2 ∫ μ dμ of functions of cos θ that are looked up at `nodes` nodes.
 pub(super) fn over_views<const N: usize>(
-    view: &Elevation<'_>,
+    view: &Elevation,
     nodes: usize,
     quantities: &impl Fn(f32) -> At<N>,
 ) -> [f64; N] {
@@ -107,7 +107,7 @@ fn add_panel<const N: usize>(
 }
 
 /// Calls `then` with h of each node but the first, ascending.
-fn each_node(view: &Elevation<'_>, floor: f64, nodes: usize, mut then: impl FnMut(f64)) {
+fn each_node(view: &Elevation, floor: f64, nodes: usize, mut then: impl FnMut(f64)) {
     let cells = nodes - 1;
     let root = |cos: f64| sqrt64(sqrt64(half_tangent(cos)));
     let mut part = |from: [f64; 2], to: [f64; 2]| {
@@ -137,7 +137,7 @@ fn each_node(view: &Elevation<'_>, floor: f64, nodes: usize, mut then: impl FnMu
 /// Finds a node on the fourth root of h, in which nodes are nearly even: the root and the view's
 /// coordinate there. The node lies between two such pairs, at about `step` from the first.
 fn view_at(
-    view: &Elevation<'_>,
+    view: &Elevation,
     target: f64,
     cells: usize,
     [mut low, mut high]: [[f64; 2]; 2],
@@ -175,13 +175,13 @@ mod tests {
         let (glass, nothing) = (critical(1.5), critical(1.0));
         let (heavy, light, none) = (upright(1.5), upright(1.2), upright(1.0));
         for view in [
-            Elevation::Blend(&rough),
-            Elevation::Blend(&smooth),
-            Elevation::Critical(&glass),
-            Elevation::Critical(&nothing),
-            Elevation::Critical(&heavy),
-            Elevation::Critical(&light),
-            Elevation::Critical(&none),
+            Elevation::Blend(rough),
+            Elevation::Blend(smooth),
+            Elevation::Critical(glass),
+            Elevation::Critical(nothing),
+            Elevation::Critical(heavy),
+            Elevation::Critical(light),
+            Elevation::Critical(none),
         ] {
             let [one, cos, above] = over_views(&view, 31, &|cos| {
                 let cos = f64::from(cos);

@@ -6,14 +6,12 @@ use alloc::vec::Vec;
 use glam::Vec3;
 use microfacet_core::Masking;
 use microfacet_core::math::unit;
+use microfacet_tables::axis::PreparedAzimuth;
 use microfacet_tables::axis::lagrange::{SIX, combine};
-use microfacet_tables::axis::{
-    CriticalBlend, PreparedAzimuth, PreparedCritical, PreparedView, ViewBlend,
-};
 use microfacet_tables::{Axis, Interval, Kind, Mapping, Reflectance, Table, Weights};
 
 use super::average::{At, add, over_views};
-use super::elevation::Elevation;
+use super::elevation::{Elevation, View};
 use crate::error::MaterialError;
 use crate::vector::vec3;
 
@@ -158,7 +156,7 @@ impl<const N: usize> ViewCurve<N> {
         self.0.with_view(v, |rows, view| self.at(rows, view, cos))
     }
 
-    fn at(&self, rows: &Rows, view: &Elevation<'_>, cos: f32) -> [f32; N] {
+    fn at(&self, rows: &Rows, view: &Elevation, cos: f32) -> [f32; N] {
         let all = self.0.interpolate(rows, view.six(cos, self.0.views));
         // Interpolation may leave [0, 1] by the table's error.
         core::array::from_fn(|i| all[i].clamp(0.0, 1.0))
@@ -223,7 +221,7 @@ pub(super) struct Curve {
     /// The values at the nodes, azimuths slowest; channels that the table lacks are 0.
     nodes: Vec<[f32; CHANNELS]>,
     views: usize,
-    view: View,
+    view: Views,
     /// The channel by which the others are clamped.
     clamp: Option<usize>,
     /// Whether the first channel is E − 1, not a share of light.
@@ -231,34 +229,16 @@ pub(super) struct Curve {
 }
 
 #[derive(Clone, Copy, Debug)]
-enum View {
+enum Views {
     /// A round lobe: the same at every azimuth.
-    Round(PreparedView),
-    /// By the roughness seen from the azimuth. γ is already in the parameters.
-    Turning(PreparedAzimuth, Turning),
-    /// From inside a dielectric.
-    Critical(PreparedCritical),
+    Round(Elevation),
+    /// By the roughness seen from the azimuth.
+    Turning(PreparedAzimuth, View),
 }
 
-/// The coordinate of the view of a lobe that differs by azimuth, before its roughness is known.
-#[derive(Clone, Copy, Debug)]
-enum Turning {
-    Blend(ViewBlend),
-    /// From inside a dielectric of index η, with 1/η.
-    Critical(CriticalBlend, f64),
-}
-
-impl Turning {
-    /// Calls `then` with the coordinate for the roughness seen from an azimuth.
-    fn at<R>(self, sigma: f64, then: impl FnOnce(&Elevation<'_>) -> R) -> R {
-        match self {
-            Self::Blend(blend) => then(&Elevation::Blend(&blend.prepare_shaped(sigma))),
-            Self::Critical(blend, inverse) => {
-                // Of one shape, as of `CriticalBlend::of_shape`, so γ does not matter.
-                then(&Elevation::Critical(&blend.prepare(sigma, f64::INFINITY, inverse)))
-            }
-        }
-    }
+/// The coordinate of views for a roughness, of one shape: its parameters do not depend on γ.
+fn shaped(view: &View, sigma: f64) -> Elevation {
+    view.prepare(sigma, f64::INFINITY)
 }
 
 /// Azimuths, by index, with their weights.
@@ -283,35 +263,25 @@ impl Curve {
             nodes.fill([0.0; CHANNELS]);
         }
         let rest = &table.axes[at.weights.len()..];
-        let view = match (rest[0].mapping, rest[rest.len() - 1].mapping) {
-            (Mapping::Azimuth(azimuth), Mapping::ViewBlend(blend)) => {
-                View::Turning(azimuth.prepare(rest[0].len()), Turning::Blend(blend))
-            }
-            (Mapping::Azimuth(azimuth), Mapping::CriticalBlend(blend)) => View::Turning(
-                azimuth.prepare(rest[0].len()),
-                Turning::Critical(blend, 1.0 / point.eta),
-            ),
-            (_, Mapping::ViewBlend(blend)) => View::Round(blend.prepare(at.sigma, point.gamma)),
-            (_, Mapping::CriticalBlend(blend)) => {
-                View::Critical(blend.prepare(at.sigma, point.gamma, 1.0 / point.eta))
-            }
-            _ => unreachable!("validated on load"),
+        let view = View::of(rest[rest.len() - 1].mapping, point.eta).expect("validated on load");
+        let view = match rest[0].mapping {
+            Mapping::Azimuth(azimuth) => Views::Turning(azimuth.prepare(rest[0].len()), view),
+            _ => Views::Round(view.prepare(at.sigma, point.gamma)),
         };
         let clamp = table.channels.iter().position(|channel| channel == Kind::CLAMP);
         Self { nodes, views: rest[rest.len() - 1].len(), view, clamp, moments }
     }
 
     /// Calls `then` with the azimuths and the elevation of a view.
-    pub(super) fn with_view<R>(&self, v: Vec3, then: impl FnOnce(&Rows, &Elevation<'_>) -> R) -> R {
+    pub(super) fn with_view<R>(&self, v: Vec3, then: impl FnOnce(&Rows, &Elevation) -> R) -> R {
         match &self.view {
-            View::Round(view) => then(ROUND, &Elevation::Blend(view)),
-            View::Critical(view) => then(ROUND, &Elevation::Critical(view)),
-            View::Turning(azimuth, blend) => {
+            Views::Round(view) => then(ROUND, view),
+            Views::Turning(azimuth, view) => {
                 let (x, y) = (f64::from(v.x), f64::from(v.y));
                 let r = libm::hypot(x, y);
                 // Along the normal the azimuth is arbitrary; NaN fails the comparison, too.
                 let (c, s) = if r > 0.0 && r < f64::INFINITY { (x / r, y / r) } else { (1.0, 0.0) };
-                blend.at(azimuth.sigma(c, s), |view| then(&azimuth.six(c, s), view))
+                then(&azimuth.six(c, s), &shaped(view, azimuth.sigma(c, s)))
             }
         }
     }
@@ -348,25 +318,24 @@ impl Curve {
         }
     }
 
-    pub(super) fn at(&self, rows: &Rows, view: &Elevation<'_>, cos: f32) -> [f32; CHANNELS] {
+    pub(super) fn at(&self, rows: &Rows, view: &Elevation, cos: f32) -> [f32; CHANNELS] {
         self.interpolate(rows, view.six(cos, self.views))
     }
 
     /// Cosine-weighted averages over views of functions of azimuths, elevation and cos θ.
     pub(super) fn average<const N: usize>(
         &self,
-        quantities: impl Fn(&Rows, &Elevation<'_>, f32) -> At<N>,
+        quantities: impl Fn(&Rows, &Elevation, f32) -> At<N>,
     ) -> [f64; N] {
-        let over = |rows: &Rows, view: &Elevation<'_>| {
+        let over = |rows: &Rows, view: &Elevation| {
             over_views(view, self.views, &|cos| quantities(rows, view, cos))
         };
         match &self.view {
-            View::Round(view) => over(ROUND, &Elevation::Blend(view)),
-            View::Critical(view) => over(ROUND, &Elevation::Critical(view)),
-            View::Turning(azimuth, blend) => {
+            Views::Round(view) => over(ROUND, view),
+            Views::Turning(azimuth, view) => {
                 let mut sum = [0.0; N];
                 for ([c, s], share) in azimuth.circle() {
-                    let part = blend.at(azimuth.sigma(c, s), |view| over(&azimuth.six(c, s), view));
+                    let part = over(&azimuth.six(c, s), &shaped(view, azimuth.sigma(c, s)));
                     add(&mut sum, share, &part);
                 }
                 sum

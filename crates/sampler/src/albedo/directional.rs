@@ -167,7 +167,7 @@ impl Albedo {
         self.curve.with_view(v, |rows, view| self.at(rows, view, unit(v.z)))
     }
 
-    fn at(&self, rows: &Rows, view: &Elevation<'_>, cos: f32) -> [f32; 3] {
+    fn at(&self, rows: &Rows, view: &Elevation, cos: f32) -> [f32; 3] {
         let channels = |cos| {
             let [e, bias, f82, _] = self.curve.at(rows, view, cos);
             [e, bias, f82]

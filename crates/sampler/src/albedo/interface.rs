@@ -7,14 +7,12 @@ use alloc::vec::Vec;
 use microfacet_core::Masking;
 use microfacet_core::math::unit;
 use microfacet_tables::axis::lagrange::{SIX, few, six};
-use microfacet_tables::axis::{
-    CriticalBlend, LogRoughness, LogShape, PreparedCritical, PreparedView, ViewBlend,
-};
+use microfacet_tables::axis::{LogRoughness, LogShape};
 use microfacet_tables::{Axis, Interpolation, Mapping, Table};
 use wide::f32x4;
 
 use super::curve::{DielectricAlbedo, MaterialPoint, ViewCurve};
-use super::elevation::Elevation;
+use super::elevation::{Elevation, View};
 
 /// Lanes of six nodes of two channels.
 const LANES: usize = 3;
@@ -64,15 +62,6 @@ pub(crate) struct Place {
     width: usize,
 }
 
-/// The coordinate of views of one side.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum View {
-    /// Of the thin side.
-    Blend(ViewBlend),
-    /// Of the dense side, with 1/η of it.
-    Critical(CriticalBlend, f64),
-}
-
 /// An axis of the material of [`InterfaceTables`], whose nodes are evenly spaced in a coordinate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InterfaceAxis<M> {
@@ -117,13 +106,6 @@ pub struct InterfaceTables {
     pub sigmas: InterfaceAxis<LogRoughness>,
     /// Seen from outside, and from inside.
     pub sides: [InterfaceSide; 2],
-}
-
-/// The view's coordinate at one γ and σ.
-#[derive(Clone, Copy, Debug)]
-enum Prepared {
-    Blend(PreparedView),
-    Critical(PreparedCritical),
 }
 
 impl<M: Copy> Nodes<M> {
@@ -235,27 +217,12 @@ impl Place {
     }
 }
 
-impl View {
-    fn prepare(&self, sigma: f64, gamma: f64) -> Prepared {
-        match self {
-            Self::Blend(blend) => Prepared::Blend(blend.prepare(sigma, gamma)),
-            Self::Critical(blend, inverse) => {
-                Prepared::Critical(blend.prepare(sigma, gamma, *inverse))
-            }
-        }
-    }
-}
-
 impl Side {
     /// The shares reflected and transmitted of a view at cos θ, each in [0, 1].
     #[inline]
-    fn shares(&self, place: &Place, view: &Prepared, cos: f32) -> [f32; 2] {
+    fn shares(&self, place: &Place, view: &Elevation, cos: f32) -> [f32; 2] {
         let Self { views, values, .. } = self;
-        let elevation = match view {
-            Prepared::Blend(view) => Elevation::Blend(view),
-            Prepared::Critical(view) => Elevation::Critical(view),
-        };
-        let (start, [a, b, c, d, e, f]) = elevation.six(unit(cos), *views);
+        let (start, [a, b, c, d, e, f]) = view.six(unit(cos), *views);
         let mut sum = [f32x4::ZERO; LANES];
         place.each(|node, weight| {
             let from = 2 * (node * views + start);
@@ -280,7 +247,7 @@ pub(crate) struct InterfaceAt<'a> {
     pub(crate) place: Place,
     sigma: f64,
     gamma: f64,
-    outside: Prepared,
+    outside: Elevation,
 }
 
 impl InterfaceAt<'_> {
@@ -329,11 +296,7 @@ impl InterfaceAlbedos {
         }
         let side = |table: &Table, values| {
             let axis = table.axes.last()?;
-            let view = match axis.mapping {
-                Mapping::ViewBlend(blend) => View::Blend(blend),
-                Mapping::CriticalBlend(blend) => View::Critical(blend, 1.0 / index),
-                _ => return None,
-            };
+            let view = View::of(axis.mapping, index)?;
             Some(Side { view, views: axis.len(), values })
         };
         let [outside, inside] = values;

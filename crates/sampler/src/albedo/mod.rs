@@ -26,10 +26,11 @@ pub use crate::error::Covered;
 pub use common::DirectionalAlbedo;
 pub use curve::{DielectricAlbedo, FresnelAlbedo, ViewCurve};
 pub use directional::Albedo;
+#[doc(hidden)]
+pub use elevation::View;
 pub use family::{AlbedoAt, FamilyAlbedo};
 pub(crate) use interface::{InterfaceAlbedos, InterfaceAt};
-#[doc(hidden)]
-pub use interface::{InterfaceAxis, InterfaceSide, InterfaceTables, View};
+pub use interface::{InterfaceAxis, InterfaceSide, InterfaceTables};
 pub use moments::Moments;
 pub use reflectance_average::{f82_tint_average, fresnel_average, schlick_average};
 pub use shape::{ShapeAlbedo, ShapeAlbedoAt};

@@ -250,7 +250,7 @@ impl ShapeAlbedoAt<'_> {
     fn average(&self) -> [f32; 3] {
         let view = self.shape.view.prepare_shaped(self.sigma.into());
         let rest = |cos| averaged(cos, self.rest(cos));
-        less_mirror(over_views(&Elevation::Blend(&view), self.shape.views, &rest))
+        less_mirror(over_views(&Elevation::Blend(view), self.shape.views, &rest))
     }
 
     /// E − 1 in [−1, 0], and the excess of the other moments over E times a mirror's.

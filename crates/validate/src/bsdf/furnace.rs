@@ -247,20 +247,9 @@ fn single(specimen: &Specimen, cos_theta: f32) -> Result<f64, Unmade> {
     let eta = f64::from(eta as f32);
     let eta = if cos_theta > 0.0 { eta } else { 1.0 / eta };
     let pane = model::fresnel::Dielectric::new(eta).map_err(unmade)?;
-    let fresnel = |mu| [pane.reflectance(mu)];
-    let [reflected] = if eta < 1.0 {
-        let kink = ((1.0 - eta) * (1.0 + eta)).sqrt();
-        integrator.reflection_with_kink(sigma, cos, kink, fresnel)
-    } else {
-        integrator.reflection(sigma, cos, fresnel)
-    }
-    .map_err(unmade)?
-    .of(masking);
-    if !transmits {
-        return Ok(reflected);
-    }
-    let [transmitted] = integrator.transmission(sigma, cos, pane).map_err(unmade)?.of(masking);
-    Ok(reflected + transmitted)
+    let [reflected, transmitted] =
+        integrator.interface(sigma, cos, pane).map_err(unmade)?.of(masking);
+    Ok(if transmits { reflected + transmitted } else { reflected })
 }
 
 /// ∫ (f of `whole` − f of `facets`) cos θ over the lights on some sides of the surface.
