@@ -16,17 +16,24 @@ use super::{KAPPA, LEAST_COS, MOST_FITTED, Shapes, TextureSpec, check_size, chec
 /// no interface within less than a texel.
 pub const ETA: [f64; 2] = [1.05, 3.0];
 
-/// In the coordinate of views from inside, the largest share of x^0.3, and how far it ends beyond a
-/// texel, in texels. On smooth surfaces all views between the horizon and the critical angle, and
-/// all beyond it, stand close to that place; half a texel off, errors in 32 texels double.
+// The constants of the coordinate of views from inside were found by measuring: their effects are
+// on the largest error of either share in 32 × 32 texels of η = 1.5, which is 2.9e-3
+// (`export lut --gamma 2 --sigma-max 1 --eta 1.5 --size 32x32 --format npy`).
+
+/// The largest share of x^0.3, and how far it ends beyond a texel, in texels. On smooth surfaces
+/// all views between the horizon and the critical angle, and all beyond it, stand close to that
+/// place; half a texel off, errors double. With a share of 0.6 they are 5.0e-3.
 const NEAR: f64 = 0.45;
 const BEYOND: f64 = 0.1;
-/// The width of the step at the critical angle, over σμ sin θ in units of μ².
+/// The width of the step at the critical angle, over σμ sin θ in units of μ². With half of it the
+/// error is 5.4e-3, with twice as much 6.2e-3.
 pub(super) const WIDTH: f64 = 3.2;
 /// κ of x = μ/(μ + κσ sin θ): scale and heavy of [`kappa`](microfacet_tables::axis::ViewBlend).
+/// With [`KAPPA`] the error is 2.8e-3, but 4.2e-3 instead of 3.5e-3 in the three cells up to η =
+/// 2.5 of a volume of 32 texels a side.
 pub(super) const KNEE: [f64; 2] = [6.5, 0.5];
-/// The power of x: that of E, ¼, leaves too few texels for the critical angle, and ⅓ too few for
-/// the horizon.
+/// The power of x. With that of E, ¼, which leaves too few texels for the critical angle, the error
+/// is 4.5e-3.
 pub(super) const POWER: f64 = 0.3;
 
 /// The indices of refraction of a texture, of the denser medium over that of the other.

@@ -57,8 +57,9 @@ const PER_CELL: usize = 2;
 /// there. With 2, what texels hold beyond that cosine is poorly determined: the largest error from
 /// inside glass in 32 × 32 texels, in a coordinate with x^⅓, was 5.1e-3 instead of 3.2e-3.
 const PER_HORIZON: usize = 6;
-/// The same along coordinates of engines, in which E of smooth surfaces changes within a cell. With
-/// 2, the table of Cycles errs by 9.1e-2 instead of 4.9e-2.
+/// The same along coordinates of engines, in which E of smooth surfaces changes within a cell, and
+/// of views from inside, which turn at the critical angle. With 2, the table of Cycles errs by
+/// 9.1e-2 instead of 4.9e-2.
 const PER_CELL_OF_ENGINES: usize = 3;
 /// Seconds that one albedo of a mirror and of an interface take on one processor, and one average,
 /// in 32 texels along each axis; only their ratio matters, for the progress that is shown.
@@ -349,9 +350,11 @@ impl TextureSpec {
         let mut points: Vec<_> = (0..grid.len()).into_par_iter().map(of).collect();
         if self.is_directional() {
             let sliced = self.axes.iter().find(|axis| axis.is_sliced());
-            let along_horizon = match self.per_cell() {
-                PER_CELL if self.is_of_interfaces() => PER_HORIZON,
-                per_cell => per_cell,
+            let is_own =
+                |axis: &TexelAxis| matches!(axis.along, Along::View(_) | Along::Critical { .. });
+            let along_horizon = match self.is_of_interfaces() && self.axes.iter().any(is_own) {
+                true => PER_HORIZON,
+                false => self.per_cell(),
             };
             for slice in sliced.map_or(vec![f64::NAN], dense) {
                 points.extend(self.horizon(&filter, slice, along_horizon));
