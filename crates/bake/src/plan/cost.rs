@@ -194,8 +194,8 @@ pub fn point_seconds(table: &Table) -> f64 {
 
 /// Microseconds for a node of albedo tables under one reflectance, and the doublings of an axis
 /// that are expected before the error is met. The rows of `planned` are off by at most a factor of
-/// 2, except for the tilted heavy lobe (2.7 in default quality) and drafts of heavy dielectrics
-/// (2.2).
+/// 2.1, except for the tilted heavy lobe (2.7 in default quality) and heavy dielectrics (2.2, and
+/// 3.2 as drafts).
 fn of_albedos(spec: &AlbedoSpec) -> [f64; 2] {
     let lobe = &spec.lobe;
     // Quadrature takes longer where tails are longer.

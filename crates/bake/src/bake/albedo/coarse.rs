@@ -57,7 +57,7 @@ impl AlbedoSpec {
         let (shape, rough) = (LogShape::BAKED, LogRoughness::BAKED);
         let of = |name, mapping, ends: [f64; 2], count| {
             let axis = Axis::new(name, mapping, Interpolation::Lagrange6, Vec::new());
-            let [from, to] = ends.map(|x| axis.coordinate(x).unwrap_or(f64::NAN));
+            let [from, to] = ends.map(|x| axis.coordinate(x).expect("an axis of a quantity"));
             Axis { nodes: even_nodes(from, to, count), ..axis }
         };
         let (view, views) = match side {
