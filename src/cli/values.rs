@@ -146,7 +146,7 @@ pub(super) fn tabulated(gammas: &[f64], remedy: &str) -> Result<()> {
 pub(super) struct Unit {
     /// Read angles in degrees instead of radians.
     #[arg(long)]
-    degrees: bool,
+    pub(super) degrees: bool,
 }
 
 impl Unit {

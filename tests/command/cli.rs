@@ -103,6 +103,41 @@ fn query_says_what_can_be_compared_and_what_is_covered() {
 }
 
 #[test]
+fn query_answers_points_of_options_as_rows_of_a_file() {
+    let text = "id,sigma_x,sigma_y,gamma,theta,phi\n007,.3,0.1,inf,1.2,-2\n";
+    let desk = Desk::new(&[("p.csv", text), ("bad.csv", &format!("{text}8,0.3,0.1,3,9,0\n"))]);
+    let of_file = desk.json("query g1 --input p.csv --json");
+    let of_options = desk.json("query g1 --sigma 0.3,0.1 --gamma inf --theta 1.2 --phi -2 --json");
+    for name in ["sigma_x", "gamma", "phi", "lambda_table", "g1_exact"] {
+        assert_eq!(of_file[0][name], of_options[0][name], "{name}");
+    }
+    assert_eq!((&of_file[0]["id"], &of_file[0]["gamma"]), (&"007".into(), &"inf".into()));
+    // Rows before one that is refused are an array all the same.
+    let said = desk.run("query g1 --input bad.csv --json").ends(2);
+    let rows: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+    assert_eq!(rows, of_file);
+
+    // D of GGX at the normal is 1/(pi sigma^2).
+    let d = desk.json("query d --sigma 0.5 --perceptual --gamma 2 --theta 0 --method exact --json");
+    let want = std::f64::consts::FRAC_1_PI * 256.0;
+    assert!((d[0]["d_exact"].as_f64().unwrap() - want).abs() < 1e-12 * want, "{d}");
+    assert_eq!(d[0]["sigma_x"], 0.25);
+
+    // A view a row and a line for each method; what all share stands above.
+    let albedo = desk.ok("query albedo --sigma 0.5 --gamma 2");
+    assert_eq!(albedo.lines().next(), Some("sigma = 0.5, gamma = 2, masking = height-correlated"));
+    assert_eq!(albedo.lines().count(), 3 + 6 * 2, "{albedo}");
+    let average = desk.ok("query albedo-average --sigma 0.5 --sigma 1 --gamma 2 --method exact");
+    has(&average, &["gamma = 2, masking", "0.5    exact", "1      exact"]);
+
+    desk.refuses("query g1 --sigma 1.1 --perceptual --gamma 2", &["1.1", "[0, 1]"]);
+    desk.refuses("query normal --sigma 0.5 --gamma 2 --u 0.5,2", &["u2 = 2", "[0, 1]"]);
+    desk.refuses("query normal --sigma 0.5 --gamma 2 --u 0.5", &["0.2,0.7"]);
+    desk.refuses("query d --sigma 0.5 --gamma 2 --input p.csv", &["--input"]);
+    desk.refuses("query albedo --gamma 2", &["--sigma"]);
+}
+
+#[test]
 fn query_answers_in_order_up_to_a_row_that_is_refused() {
     let row = |i: usize| {
         format!("{i},0.{},3,{},uncorrelated\n", 1 + i % 9, if i == 700 { "1.5" } else { "0.5" })

@@ -14,6 +14,7 @@ pub mod ellipsoid_note;
 pub mod engines;
 pub mod fit_normals;
 pub mod frame_time;
+pub mod idea;
 pub mod merl;
 pub mod planned;
 pub mod printed_formulas;
@@ -54,7 +55,7 @@ const fn study(name: &'static str, what: &'static str, run: fn(&[String]) -> Out
 }
 
 /// All studies, by name.
-pub const STUDIES: [Study; 23] = [
+pub const STUDIES: [Study; 24] = [
     study(
         "albedo_convergence",
         "error against time of one directional albedo",
@@ -77,6 +78,7 @@ pub const STUDIES: [Study; 23] = [
     study("engines", "errors of the albedos that engines ship [FOLDER]", engines::run),
     study("fit_normals", "fits of five distributions to synthetic normals", fit_normals::run),
     study("frame_time", "time to picture of textured gold beside GGX; --help", frame_time::run),
+    study("idea", "the pictures of docs/idea.md FOLDER", idea::run),
     study("merl", "makes files in the format of the MERL database [--start] FOLDER", merl::run),
     study("planned", "what bakes take next to what is planned [RECIPE ...]", planned::run),
     study(

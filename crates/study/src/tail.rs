@@ -187,7 +187,7 @@ const HIGH: f64 = 10.0;
 
 /// The share of the projected area at the slopes of a distribution, over their logarithm. All
 /// curves of a kind have one name, for the legend; what they replace is solid.
-fn curve(name: &str, of: &Named, dash: Dash) -> Result<Curve, String> {
+pub(crate) fn curve(name: &str, of: &Named, dash: Dash) -> Result<Curve, String> {
     let built = of.build().map_err(|why| why.to_string())?;
     let name = match (name, of.kind) {
         ("", DistributionKind::Haze) => "core + haze",

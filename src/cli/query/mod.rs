@@ -1,26 +1,26 @@
-//! `query`: appends table and exact values to points from a CSV file.
+//! `query`: table and exact values at points, which options name or a CSV file holds.
 
 mod columns;
+mod file;
+mod output;
+mod point;
 mod quantities;
 
 use std::path::PathBuf;
 
 use clap::{Subcommand, ValueEnum};
-use csv::{StringRecord, Writer};
-use rayon::prelude::*;
-
-use microfacet_baker::input::rows::{Row, RowError, Rows};
-use microfacet_baker::input::{MAX_ROW, open_or_stdin, shown};
 
 use super::values::Unit;
-use super::{Context, Result, interrupt, is_stream, note, tables, warn, watched, write_on};
+use super::{Result, tables};
+use point::{Average, Directed, Directional, Points, VisibleNormal};
 use quantities::{Known, Quantity};
 
-/// Append table and exact values to the points of a CSV file.
+/// Print table and exact values at points, given by options or by the rows of a CSV file.
 #[derive(clap::Args)]
-#[command(
-    after_help = "Example:\n  printf 'sigma_x,sigma_y,gamma,theta,phi\\n0.3,0.3,3,1.2,0\\n' | microfacet-bake query g1 --input -"
-)]
+#[command(after_help = "Examples:
+  microfacet-bake query albedo --sigma 0.5 --gamma 2
+  microfacet-bake query normal --sigma 0.3,0.1 --gamma 3 --theta 60 --degrees --u 0.2,0.7
+  printf 'sigma_x,sigma_y,gamma,theta,phi\\n0.3,0.3,3,1.2,0\\n' | microfacet-bake query g1 --input -")]
 pub(super) struct Args {
     #[command(subcommand)]
     what: What,
@@ -28,37 +28,48 @@ pub(super) struct Args {
 
 #[derive(Subcommand)]
 enum What {
+    /// The normal distribution function D of a microfacet normal. Columns: sigma_x, sigma_y, gamma,
+    /// theta, phi.
+    #[command(after_help = "Example:
+  microfacet-bake query d --sigma 0.1 --gamma 1.6 --theta 0 --theta 0.3")]
+    D(Directed),
     /// Smith's lambda and G1 of a view. Columns: sigma_x, sigma_y, gamma, theta, phi.
-    G1(View),
+    #[command(after_help = "Example:
+  microfacet-bake query g1 --sigma 0.5 --gamma 3 --theta 80 --degrees")]
+    G1(Directed),
     /// The visible normal at random numbers u1, u2, and its density. Columns: those of g1, and u1,
     /// u2. Below gamma = 1.8 table and exact normals of the same u1 differ.
-    Normal(View),
+    #[command(after_help = "Example:
+  microfacet-bake query normal --sigma 0.3,0.1 --gamma 3 --theta 1.2 --u 0.2,0.7")]
+    Normal(VisibleNormal),
     /// Directional albedo with F = 1 and its Schlick parts. Columns: sigma, gamma, cos_theta,
     /// masking.
-    Albedo(Io),
+    #[command(after_help = "Examples:
+  microfacet-bake query albedo --sigma 0.5 --gamma 2
+  microfacet-bake query albedo --sigma 0.7 --perceptual --gamma 2 --cos-theta 0.1 --json")]
+    Albedo(Directional),
     /// Cosine-weighted average of the albedo. Columns: sigma, gamma, masking.
-    AlbedoAverage(Io),
+    #[command(after_help = "Example:
+  microfacet-bake query albedo-average --sigma 0.5 --gamma 2 --gamma inf")]
+    AlbedoAverage(Average),
 }
 
+/// Where points come from, and where values go.
 #[derive(clap::Args)]
 struct Io {
     /// CSV file with named columns, `-` for standard input; other columns are passed through.
     #[arg(long, value_name = "CSV")]
-    input: PathBuf,
+    input: Option<PathBuf>,
     /// A table file, or a folder with one; the embedded default if absent.
     #[arg(long)]
     tables: Option<PathBuf>,
-    /// Source of the appended values.
+    /// Source of the values.
     #[arg(long, value_enum, value_delimiter = ',', default_value = "table,exact")]
     method: Vec<Method>,
-}
-
-#[derive(clap::Args)]
-struct View {
-    #[command(flatten)]
-    io: Io,
-    #[command(flatten)]
-    unit: Unit,
+    /// Print JSON: an array of an object for each point, with the names of the columns; infinity
+    /// is the text "inf".
+    #[arg(long)]
+    json: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -69,110 +80,36 @@ enum Method {
     Exact,
 }
 
-pub(super) fn run(args: &Args) -> Result<()> {
-    let (io, unit, quantity) = match &args.what {
-        What::G1(view) => (&view.io, view.unit, Quantity::G1),
-        What::Normal(view) => (&view.io, view.unit, Quantity::Normal),
-        What::Albedo(io) => (io, Unit::default(), Quantity::Albedo),
-        What::AlbedoAverage(io) => (io, Unit::default(), Quantity::AlbedoAverage),
-    };
-    let known = Known::new(quantity, unit, tables(io.tables.as_deref())?);
-    answer(io, quantity, &known)
-}
-
-/// Rows that are computed at once, on all cores, and the bytes of input after which fewer are.
-const ROWS: usize = 256;
-const BYTES: u64 = 2 * MAX_ROW;
-
-/// Approximate seconds for a byte of input; only the share of the whole counts.
-const SECONDS: f64 = 1e-6;
-
-/// Passes the rows of a file through, with the quantity's values appended.
-fn answer(io: &Io, quantity: Quantity, known: &Known) -> Result<()> {
-    let path = || shown(&io.input).to_string();
-    // The length of a stream is not limited, but that of a row is.
-    let input = open_or_stdin(&io.input, u64::MAX).with_context(path)?;
-    let mut rows = Rows::new(input, None).with_context(path)?;
-    let empty = || format!("{}: it is empty; the first row must name the columns", path());
-    let header = rows.read().with_context(path)?.with_context(empty)?.fields;
-    let [inputs, outputs] = quantity.columns();
-    let named = |method: &Method| {
-        let method = if *method == Method::Table { "table" } else { "exact" };
-        outputs.iter().map(move |stem| format!("{stem}_{method}"))
-    };
-    let names: Vec<String> = io.method.iter().flat_map(named).collect();
-    let columns = columns::find(&header, inputs, &names).with_context(path)?;
-    let mut first = Writer::from_writer(Vec::new());
-    first.write_record(header.iter().map(String::from).chain(names))?;
-    let size = std::fs::metadata(&io.input).ok().filter(|_| !is_stream(&io.input));
-    let size = size.map_or(0, |file| file.len());
-    interrupt::leaves_stream();
-    let answered = |row: Result<Row, RowError>| -> Result<StringRecord> {
-        let mut row = row?;
-        let point = picked(&row.fields, &columns);
-        let mut values = Vec::new();
-        for &method in &io.method {
-            let found = known.values(&point, method);
-            values.extend(found.with_context(|| format!("line {}", row.line))?);
+impl Method {
+    /// Its name, and the end of its columns.
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Table => "table",
+            Self::Exact => "exact",
         }
-        row.fields.extend(values);
-        Ok(row.fields)
-    };
-    watched("answering", SECONDS * size as f64, |meter| {
-        let stage = meter.stage(SECONDS * size as f64);
-        stage.split(usize::try_from(size)?);
-        if !write_on(&first.into_inner()?)? {
-            return Ok(());
-        }
-        let (mut noted, mut doubted) = (io.method.len() < 2, false);
-        let mut ended = false;
-        while !ended {
-            let mut some = Vec::new();
-            let start = rows.bytes();
-            while some.len() < ROWS && rows.bytes() - start < BYTES && !ended {
-                let row = rows.read().transpose().map(|row| complete(row?, header.len()));
-                ended = !matches!(row, Some(Ok(_)));
-                some.extend(row);
-            }
-            let read = || some.par_iter().filter_map(|row| row.as_ref().ok());
-            if !noted {
-                let found = read().find_map_first(|row| known.note(&picked(&row.fields, &columns)));
-                found.iter().for_each(note);
-                noted = found.is_some();
-            }
-            if !doubted {
-                let found = read().find_map_first(|row| {
-                    let doubt = known.doubt(&picked(&row.fields, &columns))?;
-                    Some(format!("{}: line {}: {doubt}", path(), row.line))
-                });
-                found.iter().for_each(warn);
-                doubted = found.is_some();
-            }
-            let answers: Vec<_> = some.into_par_iter().map(answered).collect();
-            // Whole rows in order; those before a refused one are still written.
-            let mut writer = Writer::from_writer(Vec::new());
-            let write = |answer: Result<StringRecord>| Ok(writer.write_record(&answer?)?);
-            let refused: Result<()> = answers.into_iter().try_for_each(write);
-            if !write_on(&writer.into_inner()?)? {
-                return Ok(());
-            }
-            refused.with_context(path)?;
-            stage.steps(usize::try_from(rows.bytes() - start)?);
-        }
-        Ok(())
-    })
-}
-
-/// The fields of a row in some columns.
-fn picked<'a>(record: &'a StringRecord, columns: &[usize]) -> Vec<&'a str> {
-    columns.iter().map(|&column| &record[column]).collect()
-}
-
-/// A row, which must have as many columns as the header.
-fn complete(row: Row, columns: usize) -> Result<Row, RowError> {
-    if row.fields.len() == columns {
-        return Ok(row);
     }
-    let why = format!("it has {} columns, and the header {columns}", row.fields.len());
-    Err(RowError { line: row.line, why })
+}
+
+pub(super) fn run(args: &Args) -> Result<()> {
+    let (quantity, points): (_, &dyn Points) = match &args.what {
+        What::D(at) => (Quantity::D, at),
+        What::G1(at) => (Quantity::G1, at),
+        What::Normal(at) => (Quantity::Normal, at),
+        What::Albedo(at) => (Quantity::Albedo, at),
+        What::AlbedoAverage(at) => (Quantity::AlbedoAverage, at),
+    };
+    let io = points.io();
+    let known = Known::new(quantity, points.unit(), tables(io.tables.as_deref())?);
+    match &io.input {
+        Some(input) => file::answer(input, io, quantity, &known),
+        None => point::answer(&points.rows()?, io, quantity, &known),
+    }
+}
+
+/// The columns that a quantity appends, by each method.
+fn appended(quantity: Quantity, methods: &[Method]) -> Vec<String> {
+    let [_, outputs] = quantity.columns();
+    let named =
+        |method: &Method| outputs.iter().map(|stem| format!("{stem}_{}", method.name())).collect();
+    methods.iter().flat_map(|method| -> Vec<String> { named(method) }).collect()
 }

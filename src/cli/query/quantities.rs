@@ -20,6 +20,7 @@ use crate::cli::{Result, anyhow, bail};
 /// A quantity that `query` computes at a point.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Quantity {
+    D,
     G1,
     Normal,
     Albedo,
@@ -30,6 +31,7 @@ impl Quantity {
     /// The columns that a quantity reads, and those that it appends, each followed by the method.
     pub(super) fn columns(self) -> [&'static [&'static str]; 2] {
         match self {
+            Self::D => [&["sigma_x", "sigma_y", "gamma", "theta", "phi"], &["d"]],
             Self::G1 => [&["sigma_x", "sigma_y", "gamma", "theta", "phi"], &["lambda", "g1"]],
             Self::Normal => [
                 &["sigma_x", "sigma_y", "gamma", "theta", "phi", "u1", "u2"],
@@ -66,6 +68,7 @@ impl Known {
     /// The quantity at the point of a row, in the columns that it appends.
     pub(super) fn values(&self, fields: &[&str], method: Method) -> Result<Vec<String>> {
         match self.quantity {
+            Quantity::D => self.d(&self.point(fields)?, method),
             Quantity::G1 => self.g1(&self.point(fields)?, method),
             Quantity::Normal => self.normal(&self.point(fields)?, method),
             Quantity::Albedo => self.albedo(fields, method),
@@ -129,16 +132,24 @@ impl Known {
             _ => [0.5; 2],
         };
         let (sin, cos) = theta.sin_cos();
-        let view = DVec3::new(sin * phi.cos(), sin * phi.sin(), cos);
-        Ok(Point { sigma: [x, y], gamma, exact, view, u })
+        let direction = DVec3::new(sin * phi.cos(), sin * phi.sin(), cos);
+        Ok(Point { sigma: [x, y], gamma, exact, direction, u })
     }
 
     fn lobe(&self, at: &Point) -> Result<StudentT> {
         Ok(self.set.student_t(at.sigma, at.gamma)?)
     }
 
+    fn d(&self, at: &Point, method: Method) -> Result<Vec<String>> {
+        let m = at.direction;
+        Ok(vec![match method {
+            Method::Table => text(self.lobe(at)?.d(m.as_vec3())),
+            Method::Exact => text(at.exact.d(m)),
+        }])
+    }
+
     fn g1(&self, at: &Point, method: Method) -> Result<Vec<String>> {
-        let v = at.view;
+        let v = at.direction;
         Ok(match method {
             Method::Table => {
                 let (lobe, v) = (self.lobe(at)?, v.as_vec3());
@@ -149,7 +160,7 @@ impl Known {
     }
 
     fn normal(&self, at: &Point, method: Method) -> Result<Vec<String>> {
-        let v = at.view;
+        let v = at.direction;
         Ok(match method {
             Method::Table => {
                 let (lobe, v) = (self.lobe(at)?, v.as_vec3());
@@ -209,12 +220,13 @@ impl Known {
     }
 }
 
-/// A material and a view, and for normals two random numbers.
+/// A material and a direction, and for visible normals two random numbers.
 struct Point {
     sigma: [f64; 2],
     gamma: f64,
     exact: model::StudentT,
-    view: DVec3,
+    /// A view, or for D a microfacet normal.
+    direction: DVec3,
     u: [f64; 2],
 }
 

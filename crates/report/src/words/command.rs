@@ -13,7 +13,7 @@ pub fn options(configuration: &Configuration) -> String {
 pub fn query(point: &Point) -> String {
     let Point { sigma: [x, y], gamma, theta, phi, u: [u1, u2] } = point;
     format!(
-        "printf 'sigma_x,sigma_y,gamma,theta,phi,u1,u2\\n{x:?},{y:?},{gamma:?},{theta:?},{phi:?},{u1:?},{u2:?}\\n' | \
-         microfacet-bake query normal --input -"
+        "microfacet-bake query normal --sigma {x:?},{y:?} --gamma {gamma:?} --theta {theta:?} \
+         --phi {phi:?} --u {u1:?},{u2:?}"
     )
 }

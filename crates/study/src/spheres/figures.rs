@@ -20,7 +20,7 @@ use microfacet_tables::Precision;
 use crate::spheres::scene::{COLOURED, Floor, GREY, Scene};
 use crate::spheres::sky::Sky;
 
-/// A figure of Ribardière et al. 2017 (doi:10.1111/cgf.13137).
+/// A figure of Ribardière et al. 2017 (doi:10.1111/cgf.13137), or one of the tails.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Figure {
     /// Aluminium, shape γ across, roughness σ down
@@ -32,6 +32,8 @@ pub(crate) enum Figure {
     /// Light that one bounce returns of a white furnace, roughness σ across, shape γ down
     #[value(name = "9")]
     Energy,
+    /// Gold under one small lamp, shape γ across
+    Tails,
 }
 
 pub(crate) struct Spheres {
@@ -87,6 +89,7 @@ impl Figure {
             Self::Roughness => roughness(&Tables::embedded())?,
             Self::Materials => materials(&tables(meter)?)?,
             Self::Energy => energy(&Tables::embedded())?,
+            Self::Tails => tails(&Tables::embedded())?,
         })
     }
 }
@@ -98,8 +101,12 @@ fn label(gamma: f64) -> String {
 type Sphere = Result<(Scene, String), BindError>;
 
 fn studio(material: impl Into<AnyBsdf>, floor: [[f32; 3]; 2]) -> Sphere {
+    under(Sky::studio(), material, floor)
+}
+
+fn under(sky: Sky, material: impl Into<AnyBsdf>, floor: [[f32; 3]; 2]) -> Sphere {
     let floor = Some(Floor::new(floor)?);
-    Ok((Scene { material: material.into(), floor, sky: Sky::studio() }, String::new()))
+    Ok((Scene { material: material.into(), floor, sky }, String::new()))
 }
 
 /// The embedded tables, and what they lack: albedos of dielectrics and of lobes that are not round.
@@ -219,4 +226,19 @@ fn energy(tables: &Tables) -> Result<Spheres, BindError> {
     let groups = vec![(SIGMAS.len(), "light that one bounce returns, F = 1".into())];
     let columns = SIGMAS.map(|sigma| format!("σ = {sigma}"));
     Ok(Spheres::new(groups, columns.into(), rows, true))
+}
+
+/// Shapes of one roughness, so that the core of the highlight is the same and the tail is not.
+fn tails(tables: &Tables) -> Result<Spheres, BindError> {
+    const SIGMA: f64 = 0.1;
+    let shapes =
+        [(1.6, "γ = 1.6"), (2.0, "γ = 2, GGX"), (4.0, "γ = 4"), (f64::INFINITY, "γ = ∞, Beckmann")];
+    let gold = |(gamma, _)| {
+        let lobe = tables.lobe(SIGMA, gamma)?;
+        under(Sky::one_lamp(), Conductor::new(lobe, Metal::Gold, BsdfSettings::new())?, GREY)
+    };
+    let rows = vec![row("Gold".into(), &shapes, gold)?];
+    let groups = vec![(shapes.len(), format!("one roughness, σ = {SIGMA}"))];
+    let columns = shapes.map(|(_, heading)| heading.into());
+    Ok(Spheres::new(groups, columns.into(), rows, false))
 }

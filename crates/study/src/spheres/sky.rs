@@ -50,6 +50,14 @@ impl Sky {
         }
     }
 
+    /// One small lamp in a dark room, where the tail of a lobe stands out.
+    pub fn one_lamp() -> Self {
+        let towards = Vec3::new(-0.45, 0.75, 0.75).normalize();
+        let height = 1.0 - 4.0_f32.to_radians().cos();
+        let lamp = Lamp { towards, height, radiance: Vec3::splat(150.0) };
+        Self { zenith: Vec3::splat(0.02), horizon: Vec3::splat(0.03), lamps: vec![lamp] }
+    }
+
     /// Radiance from a direction of unit length, and the sum of the densities per steradian there
     /// of the directions of [`sample`](Self::sample).
     pub fn seen(&self, direction: Vec3) -> (Vec3, f32) {
