@@ -199,7 +199,7 @@ async function begin() {
         const coarse = sphere.size < size;
         if (state !== opening || (index >= enough && !coarse)) reveal();
         $('sphere-samples').textContent = still.hidden ? `${index} of ${samples} samples`
-            : coarse ? 'A picture; what is changed is drawn here, in fewer pixels'
+            : coarse ? 'A picture; move a control, and the sphere is drawn live in fewer pixels'
                 : `A picture; ${index} of ${enough} samples are drawn to replace it`;
     };
     const { stop, sigma, reflectance } = data.materials[data.opening];
