@@ -4,6 +4,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { launch, open, settled } from './harness.mjs';
+import { ring } from './layout.mjs';
 
 let browser;
 before(async () => (browser = await launch()));
@@ -18,13 +19,14 @@ function controls() {
     return window.controls.length;
 }
 
-for (const name of ['default', 'gold']) {
-    test(`${name}: Tab reaches every control, and shows where it is`, async t => {
-        const { page } = await open(t, browser, name);
+for (const [name, width] of [['default', 1440], ['default', 375], ['gold', 1440]]) {
+    test(`${name} at ${width}: Tab reaches every control, and shows where it is`, async t => {
+        const { page } = await open(t, browser, name, { width });
         await settled(page);
         const count = await page.evaluate(controls);
         assert.ok(count > 0, 'no controls');
         const seen = new Map();
+        const cut = [];
         // Radio buttons of one name share a stop, so that there may be fewer.
         for (let i = 0; i < 2 * count + 10; i++) {
             await page.keyboard.press('Tab');
@@ -39,7 +41,12 @@ for (const name of ['default', 'gold']) {
                 break;
             }
             seen.set(at.index, at.isSeen);
+            // What has the focus comes into view within a frame or two.
+            await page.evaluate(() => new Promise(seen => requestAnimationFrame(
+                () => requestAnimationFrame(seen))));
+            cut.push(...await page.evaluate(ring));
         }
+        assert.deepEqual(cut, []);
         const reached = await page.evaluate(
             indices => window.controls.map((element, i) => ({
                 what: element.id || element.getAttribute('class') || element.textContent.trim(),

@@ -65,7 +65,9 @@ export function layout({ touch }) {
             const matrix = drawn?.getScreenCTM();
             size *= matrix ? Math.hypot(matrix.a, matrix.b) : 1;
         }
-        if (size < 9 && boxes.length > 0) {
+        // Figures shrink with the width of the window; a phone is where they are smallest.
+        const least = touch ? 11 : 9;
+        if (size < least && boxes.length > 0) {
             found.push(`letters of ${size.toFixed(1)} pixels: ${words(element)}`);
         }
     }
@@ -117,6 +119,32 @@ export function layout({ touch }) {
         }
         return found;
     }
+}
+
+/// The ring about what has the focus is seen on all sides: nothing around it cuts it.
+export function ring() {
+    const element = document.activeElement;
+    const { outlineStyle, outlineWidth, outlineOffset } = getComputedStyle(element);
+    if (outlineStyle === 'none') {
+        return [];
+    }
+    const reach = parseFloat(outlineWidth) + parseFloat(outlineOffset);
+    const box = element.getBoundingClientRect();
+    for (let at = element.parentElement; at; at = at.parentElement) {
+        const { overflowX, overflowY } = getComputedStyle(at);
+        if (at === document.body || overflowX === 'visible' && overflowY === 'visible') {
+            continue;
+        }
+        const outer = at.getBoundingClientRect();
+        const [left, top] = [outer.left + at.clientLeft, outer.top + at.clientTop];
+        const over = Math.max(left - (box.left - reach), box.right + reach - left - at.clientWidth,
+            top - (box.top - reach), box.bottom + reach - top - at.clientHeight);
+        if (over > 0.5) {
+            const what = element.id || element.textContent.trim().slice(0, 40);
+            return [`the ring about "${what}" is cut by ${over.toFixed(1)} pixels`];
+        }
+    }
+    return [];
 }
 
 /// On paper: pictures are there, and what must not be divided is asked to stay whole and fits.

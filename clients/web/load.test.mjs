@@ -1,8 +1,10 @@
 // Pages load by themselves, whole and without a word, whatever a browser lacks.
 
 import assert from 'node:assert/strict';
+import { rmSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { PAGES, launch, open, settled, source } from './harness.mjs';
+import { FOLDER, PAGES, address, launch, open, settled, source } from './harness.mjs';
 import { names, structure } from './structure.mjs';
 
 let browser;
@@ -40,6 +42,68 @@ for (const name of PAGES) {
         assert.ok(shapes > 0 && each <= BYTES_OF_SHAPE, `${each} bytes a shape`);
     });
 }
+
+/// The page with a letter of each of its scripts changed, as by one who slips another in.
+test('a script that the page does not state by hash does not run', async t => {
+    const path = join(FOLDER, 'altered.html');
+    const altered = source('default').toString().replaceAll(
+        /(<script type="module">)/g, '$1window.altered = true; ');
+    writeFileSync(path, altered);
+    t.after(() => rmSync(path));
+    const { page, troubles } = await open(t, browser, 'altered');
+    assert.equal(await page.evaluate(() => window.altered || window.report), undefined);
+    assert.equal(troubles.length, 2, troubles.join('\n'));
+    for (const word of troubles) {
+        assert.match(word, /script .*violates .*Content Security Policy .*script-src 'sha256-/s);
+    }
+    // Pictures are there all the same.
+    assert.ok(await page.locator('#sphere-still').isVisible());
+    assert.equal(await page.locator('#look .controls').isVisible(), false);
+});
+
+test('the picture is first, and the sphere takes its place when it is as clean', async t => {
+    const options = { width: 375, height: 812 };
+    // Frames are held back, so that nothing is drawn before the test looks.
+    const init = () => {
+        const { requestAnimationFrame } = window;
+        const held = [];
+        window.requestAnimationFrame = draw => held.push(draw);
+        window.release = () => {
+            window.requestAnimationFrame = requestAnimationFrame;
+            held.splice(0).forEach(draw => requestAnimationFrame(draw));
+        };
+    };
+    const { page, troubles } = await open(t, browser, 'default', { ...options, init });
+    const polling = { polling: 50 };
+    await page.waitForFunction(() => window.report, null, polling);
+    const shown = () => Promise.all(['#sphere-still', '#sphere'].map(
+        id => page.locator(id).isVisible()));
+    assert.deepEqual(await shown(), [true, false]);
+    await page.evaluate(() => window.release());
+    await page.waitForFunction(() => /^A picture; /.test(
+        document.querySelector('#sphere-samples').textContent), null, polling);
+    assert.deepEqual(await shown(), [true, false]);
+    // A picture of fewer pixels and samples is soon passed.
+    await page.evaluate(() => {
+        const still = document.querySelector('#sphere-still');
+        still.setAttribute('width', 64);
+        still.dataset.samples = 2;
+    });
+    await page.waitForSelector('#sphere', { state: 'visible' });
+    assert.deepEqual(await shown(), [false, true]);
+    assert.deepEqual(troubles, []);
+});
+
+test('what the picture does not show is drawn at once', async t => {
+    for (const [hash, look] of [['', { gamma: 5 }], ['#gamma=5&sigma=0.2', {}]]) {
+        const url = address('default') + hash;
+        const { page, troubles } = await open(t, browser, 'default', { url, width: 375 });
+        await settled(page, { ...look, size: 64, samples: 1 });
+        assert.equal(await page.locator('#sphere-still').isVisible(), false);
+        assert.ok(await page.locator('#sphere').isVisible());
+        assert.deepEqual(troubles, []);
+    }
+});
 
 /// Browsers that lack something, and how.
 const LACKING = {

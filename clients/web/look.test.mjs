@@ -16,7 +16,7 @@ after(() => browser.close());
 const shots = process.env.SHOTS;
 /// What the sphere rests in: on a screenshot it is to be seen.
 const look = shots ? { size: 240, samples: 32 } : undefined;
-const WIDTHS = { 1440: { height: 900 }, 390: { height: 844, touch: true } };
+const WIDTHS = { 1440: { height: 900 }, 375: { height: 812, touch: true } };
 
 for (const name of PAGES) {
     for (const [width, screen] of Object.entries(WIDTHS)) {

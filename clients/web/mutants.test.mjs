@@ -7,7 +7,7 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { difference, launch, open } from './harness.mjs';
-import { layout, printed } from './layout.mjs';
+import { layout, printed, ring } from './layout.mjs';
 import { contrast, names, shownText, structure } from './structure.mjs';
 
 const folder = mkdtempSync(join(tmpdir(), 'mutants-'));
@@ -27,6 +27,7 @@ const GOOD = `<!DOCTYPE html>
 figure { break-inside: avoid; margin: 0; }
 input { min-height: 24px; }
 .scroll { overflow-x: auto; }
+.scroll a { display: inline-block; padding: 6px; outline-offset: -2px; }
 .reader { position: absolute; width: 1px; height: 1px; overflow: hidden; white-space: nowrap; }
 @media print { input { display: none; } button { display: contents; } }
 </style></head><body><main><h1>A page</h1><section><h2>A part</h2>
@@ -35,8 +36,9 @@ input { min-height: 24px; }
 <label for="sigma">Roughness</label> <input id="sigma" type="range">
 <figure><img src="${DOT}" alt="a dot"><figcaption>A dot</figcaption></figure>
 <button aria-label="Show a dot"><img src="${DOT}" alt="" width="24" height="24"></button>
-<svg role="img" aria-label="a figure" width="100" height="40"><text x="5" y="20" font-size="10"
+<svg role="img" aria-label="a figure" width="100" height="40"><text x="5" y="20" font-size="12"
  fill="light-dark(#111,#eee)">text</text></svg>
+<nav class="scroll"><a href="#words">to the words</a></nav>
 <div class="scroll"><table><caption>Numbers</caption>
 <tr><th scope="col">wide</th><td>1</td></tr></table></div>
 </section></main></body></html>`;
@@ -45,7 +47,7 @@ input { min-height: 24px; }
 async function findings(t, html) {
     const path = join(folder, 'page.html');
     writeFileSync(path, html);
-    const options = { url: pathToFileURL(path).href, width: 390 };
+    const options = { url: pathToFileURL(path).href, width: 375 };
     const { page, troubles } = await open(t, browser, '', options);
     await page.evaluate(shownText);
     const found = [
@@ -55,6 +57,11 @@ async function findings(t, html) {
         ...await page.evaluate(layout, { touch: true }),
         ...await page.evaluate(contrast),
     ];
+    await page.keyboard.press('Tab');
+    for (const link of await page.locator('a').all()) {
+        await link.focus();
+        found.push(...await page.evaluate(ring));
+    }
     await page.emulateMedia({ media: 'print' });
     found.push(...await page.evaluate(printed, { pageHeight: 1000 }));
     return found;
@@ -95,7 +102,8 @@ const MUTANTS = [
     ['class="reader"', 'style="position: absolute; left: -50rem"', /beyond the page: h3/],
     ['<p id="words">', '<p style="position: relative; z-index: 1; top: 120px">', /overlap.* img/],
     ['<p id="words">', '<p style="font-size: 7px">', /letters of 7/],
-    ['font-size="10"', 'font-size="8"', /letters of 8/],
+    ['font-size="12"', 'font-size="10.5"', /letters of 10.5/],
+    ['outline-offset: -2px', 'outline-offset: 2px', /the ring about "to the words" is cut/],
     ['min-height: 24px', 'height: 12px', /a target of/],
     ['<p id="words">', '<p style="color: light-dark(#888, #777)">', /contrast/],
     ['<p id="words">', '<p style="opacity: 0.5">', /contrast/],

@@ -3,7 +3,6 @@
 mod bake;
 mod bsdf;
 mod convert;
-mod escape;
 mod export;
 mod fit;
 mod furnace;
@@ -41,6 +40,7 @@ use anyhow::{Context, Error as Failure, Result, anyhow, bail, ensure};
 use clap::{FromArgMatches, Parser, Subcommand};
 use rayon::ThreadPoolBuilder;
 
+use microfacet_baker::escape;
 use microfacet_baker::progress::Meter;
 use microfacet_baker::store;
 use microfacet_sampler::Tables;

@@ -9,7 +9,7 @@ use microfacet_baker::progress::Stage;
 use microfacet_baker::table_spec::Quality;
 use microfacet_sampler::{Masking, Tables};
 use microfacet_tables::{Interval, Precision, Table};
-use microfacet_validate::furnace::{TOLERANCE, direction, furnace, survey};
+use microfacet_validate::furnace::{TOLERANCE, anisotropic, direction, furnace, survey};
 
 use crate::sets::{self, set_of};
 
@@ -64,6 +64,34 @@ fn the_furnace_closes() {
                 assert!(sigma > 1e-8 || 1.0 - row.single < 1e-9 || cos < 1e-5, "{row:?}");
             }
         }
+    }
+}
+
+/// A lobe that is not round, with the albedo of its own table; a round one as by [`furnace`].
+#[test]
+fn the_furnace_of_an_anisotropic_lobe_closes() {
+    let (sigma, gamma) = ([0.15, 0.6], 3.0);
+    let own = sets::draft(&sets::recipe(&[["a", "[0.15, 0.6]", "3.0", "fresnel = \"mirror\""]]));
+    let albedo = own.material_albedo("a").unwrap();
+    for phi in [0.0, 0.7, std::f64::consts::FRAC_PI_2] {
+        for cos in [1e-4, 0.1, 0.5, 1.0] {
+            let row = anisotropic(&albedo, sigma, gamma, cos, phi).unwrap();
+            assert!((row.kulla_conty - 1.0).abs() < TOLERANCE, "{phi}: {row:?}");
+            assert!(cos < 0.1 || 1.0 - row.single > 2.0 * TOLERANCE, "{row:?}");
+        }
+    }
+    let default = Tables::embedded();
+    let masking = albedo.masking();
+    // The albedo of the round lobe in its place does not close.
+    let round = default.albedo(0.3, gamma, masking).unwrap();
+    let row = anisotropic(&round, sigma, gamma, 0.1, 0.0).unwrap();
+    assert!((row.kulla_conty - 1.0).abs() > 10.0 * TOLERANCE, "{row:?}");
+    let [a, b] = [
+        anisotropic(&round, [0.3; 2], gamma, 0.1, 0.7).unwrap(),
+        furnace(&default, masking, 0.3, gamma, 0.1).unwrap(),
+    ];
+    for [a, b] in [[a.single, b.single], [a.turquin, b.turquin], [a.kulla_conty, b.kulla_conty]] {
+        assert!((a - b).abs() < 1e-5, "{a} {b}");
     }
 }
 

@@ -40,6 +40,7 @@ pub mod bake;
 pub mod cache;
 pub mod certify;
 pub mod distribution;
+pub mod escape;
 pub mod input;
 pub mod library;
 pub mod memory;

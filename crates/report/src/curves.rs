@@ -12,13 +12,16 @@ use microfacet_tables::MaterialEntry;
 
 use super::Source;
 use super::drawing::{plot, symbols, unbroken};
-use super::subjects::{SHOWN, Shown, Subjects};
+use super::subjects::{ALONG, SHOWN, Shown, Subjects};
+use super::texts;
 use crate::plot::{Axis, Curve, Dash, Key, Panel};
 use crate::words::material::material;
 use crate::words::{number, range};
 
 /// Intervals of θ along a curve, denser at the normal, where heavy tails fall, and at the horizon.
 const VIEWS: u32 = 45;
+/// Most letters of a name in a legend.
+const LEGEND: usize = 28;
 /// θ in degrees of the view whose values captions state.
 const STATED: f64 = 80.0;
 
@@ -26,11 +29,21 @@ struct Line {
     name: String,
     key: Key,
     dash: Dash,
-    /// G1 of a view, and E of the round lobe of √(σx σy) if a table covers it.
+    /// The azimuth of its views in radians.
+    phi: f64,
+    /// G1 of a view, and E if a table covers it; a line may be of one of them.
     quantities: [Option<Quantity>; 2],
 }
 
 type Quantity = Box<dyn Fn(Vec3) -> f32>;
+
+fn masking_of(lobe: Lobe) -> Quantity {
+    Box::new(move |v| lobe.g1(v))
+}
+
+fn albedo_of(albedo: Albedo) -> Quantity {
+    Box::new(move |v| albedo.albedo(v))
+}
 
 /// Titles and labels of the panels, one for each of `Line::quantities`.
 const PANELS: [[&str; 2]; 2] = [
@@ -40,8 +53,8 @@ const PANELS: [[&str; 2]; 2] = [
 
 impl Line {
     fn new(name: String, key: Key, dash: Dash, lobe: Lobe, albedo: Option<Albedo>) -> Self {
-        let e = albedo.map(|albedo| -> Quantity { Box::new(move |v| albedo.albedo(v)) });
-        Self { name, key, dash, quantities: [Some(Box::new(move |v| lobe.g1(v))), e] }
+        let quantities = [Some(masking_of(lobe)), albedo.map(albedo_of)];
+        Self { name, key, dash, phi: 0.0, quantities }
     }
 
     fn of_family(set: &Tables, shown: &Shown, gamma: f64) -> Option<Self> {
@@ -59,12 +72,42 @@ impl Line {
         Some(Self::new(name, key, dash, lobe, albedo))
     }
 
+    /// An anisotropic lobe with an albedo of its own, seen along x and along y, with GGX of the
+    /// same σx and σy, and E of the round lobe that would stand in for it.
+    fn of_anisotropic(set: &Tables, shown: &Shown, own: &Albedo) -> Vec<Self> {
+        let lines = |gamma: f64, dash, of: &str, albedo: Option<&Albedo>| -> Vec<Self> {
+            let Ok(lobe) = set.lobe(shown.sigma, gamma) else { return Vec::new() };
+            let line = |(i, &(phi, along)): (usize, &(f64, &str))| Self {
+                phi,
+                ..Self::new(
+                    format!("{of}{along}"),
+                    Key::Nth(i),
+                    dash,
+                    lobe.clone(),
+                    albedo.cloned(),
+                )
+            };
+            ALONG.iter().enumerate().map(line).collect()
+        };
+        let mut all = lines(shown.gamma, Dash::Solid, "", Some(own));
+        if shown.gamma != 2.0 {
+            all.extend(lines(2.0, Dash::Dashed, "GGX, ", None));
+        }
+        let round = set.albedo(shown.round_sigma(), shown.gamma, shown.masking()).ok();
+        all.extend(round.map(|round| {
+            let (name, quantities) = ("the round lobe".into(), [None, Some(albedo_of(round))]);
+            Self { name, key: Key::OTHER, dash: Dash::Dotted, phi: 0.0, quantities }
+        }));
+        all
+    }
+
     /// A lobe with tables of its own, or tilted.
     fn of_material(set: &Tables, entry: &MaterialEntry) -> Option<Self> {
         let lobe = set.material(&entry.name).ok()?;
         let albedo = set.material_albedo(&entry.name).ok();
         let tilted = || format!("γ = {}, tilted", symbols(&range(entry.lobe.gamma)));
         let name = entry.lobe.distribution.clone().unwrap_or_else(tilted);
+        let name = texts::cut(&name, LEGEND).into_owned();
         Some(Self::new(name, Key::TABLE, Dash::Solid, lobe, albedo))
     }
 
@@ -72,22 +115,23 @@ impl Line {
         let of = self.quantities[quantity].as_ref()?;
         let points = (0..=VIEWS).map(|i| {
             let degrees = 45.0 * (1.0 - (PI * f64::from(i) / f64::from(VIEWS)).cos());
-            (degrees, f64::from(of(view(degrees))))
+            (degrees / 90.0, f64::from(of(view(degrees, self.phi))))
         });
         Some(Curve::new(self.key, &self.name, points).dashed(self.dash))
     }
 
     /// The quantity at θ = [`STATED`], with the name of the lobe.
     fn stated(&self, quantity: usize) -> Option<String> {
-        let value = self.quantities[quantity].as_ref()?(view(STATED));
+        let value = self.quantities[quantity].as_ref()?(view(STATED, self.phi));
         Some(format!("{value:.3} ({})", unbroken(&self.name)))
     }
 }
 
-/// The view direction at this angle from the normal, in the plane of x and z.
-fn view(degrees: f64) -> Vec3 {
+/// The view direction at this angle from the normal and this azimuth.
+fn view(degrees: f64, phi: f64) -> Vec3 {
     let (sin, cos) = degrees.to_radians().sin_cos();
-    Vec3::new(sin as f32, 0.0, cos.max(0.0) as f32)
+    let (y, x) = phi.sin_cos();
+    Vec3::new((sin * x) as f32, (sin * y) as f32, cos.max(0.0) as f32)
 }
 
 pub(super) fn section(source: &Source, subjects: &Subjects) -> Markup {
@@ -117,12 +161,20 @@ fn others(set: &Tables) -> Vec<&MaterialEntry> {
 
 /// A lobe of the family with GGX and Beckmann of the same σ.
 fn of_family(set: &Tables, shown: &Shown) -> Markup {
+    if let Some(own) = shown.own_albedo(set) {
+        let what = html! {
+            b { (texts::name(&shown.name)) } ": " (shown.description())
+            ", seen along x and along y. E is that of its own table, over azimuth and view; beside \
+             it stands E of the round lobe of σ = √(σx σy). "
+        };
+        return figure(&shown.name, &Line::of_anisotropic(set, shown, &own), &what);
+    }
     let beside = [2.0, f64::INFINITY].into_iter().filter(|&gamma| gamma != shown.gamma);
     let gammas = std::iter::once(shown.gamma).chain(beside);
     let lines: Vec<Line> = gammas.filter_map(|gamma| Line::of_family(set, shown, gamma)).collect();
     let stands_in = shown.sigma[0] != shown.sigma[1];
     let what = html! {
-        b { bdi { (shown.name) } } ": " (shown.description()) ". "
+        b { (texts::name(&shown.name)) } ": " (shown.description()) ". "
         @if stands_in {
             "The views of G1 lie along x. E is that of the round lobe of σ = √(σx σy) = "
             (number(shown.round_sigma())) ", which stands in for it. "
@@ -134,7 +186,7 @@ fn of_family(set: &Tables, shown: &Shown) -> Markup {
 fn of_material(set: &Tables, entry: &MaterialEntry) -> Markup {
     let Some(line) = Line::of_material(set, entry) else { return html! {} };
     let what = html! {
-        b { bdi { (entry.name) } } ": " bdi { (symbols(&material(entry))) }
+        b { (texts::name(&entry.name)) } ": " (texts::words(&symbols(&material(entry))))
         ". The views lie along x. "
     };
     figure(&entry.name, &[line], &what)
@@ -146,7 +198,8 @@ fn figure(name: &str, lines: &[Line], what: &Markup) -> Markup {
         let stated: Vec<String> = lines.iter().filter_map(|line| line.stated(i)).collect();
         (lines.iter().filter_map(|line| line.curve(i)).collect(), stated.join(", "))
     });
-    let views = || Axis::linear("θ, the angle of the view, degrees", 0.0, 90.0);
+    let degrees = [0.0, 90.0, 30.0, 60.0].map(|x| (x / 90.0, number(x)));
+    let views = || Axis::marked("θ, the angle of the view, degrees", degrees.clone());
     html! {
         figure {
             div.plots {
@@ -155,7 +208,7 @@ fn figure(name: &str, lines: &[Line], what: &Markup) -> Markup {
                         @let y = Axis::linear(*label, 0.0, 1.0);
                         (plot(
                             Panel::new(*title, views(), y, curves.clone()),
-                            &format!("{label}, of {name}. Seen at {STATED}°: {stated}."),
+                            &format!("{label}, of {}. Seen at {STATED}°: {stated}.", texts::short(name)),
                         ))
                     }
                 }

@@ -5,8 +5,9 @@ use maud::{Markup, PreEscaped, html};
 use crate::plot::{Figure, Panel};
 use crate::words;
 
-/// Size of a plot in pixels: two fit side by side on paper, and the text is legible on a phone.
-pub(super) const SIZE: [f64; 2] = [380.0, 290.0];
+/// Size of a plot in pixels: about the width that a phone has for it, so that letters keep their
+/// size there; two fit side by side on paper.
+pub(super) const SIZE: [f64; 2] = [340.0, 290.0];
 
 /// A panel as an element of the page; `label` describes it for screen readers.
 pub(super) fn plot(panel: Panel, label: &str) -> Markup {

@@ -7,6 +7,7 @@ use microfacet_tables::Table;
 use super::Source;
 use super::drawing::symbols;
 use super::subjects::Subjects;
+use super::texts;
 use crate::words;
 
 /// The name of the set, its tables, bytes and shapes in numbers, and the switch of colours.
@@ -17,7 +18,7 @@ pub(super) fn head(source: &Source, subjects: &Subjects) -> Markup {
                 span { "microfacet-bake" }
                 (themes())
             }
-            h1 { (source.name) }
+            h1 { (texts::name(source.name)) }
             dl.facts {
                 @for (name, value) in facts(source, subjects) {
                     div { dt { (name) } dd { (symbols(&value)) } }
@@ -58,8 +59,8 @@ pub(super) fn foot(source: &Source) -> Markup {
     let origin = source.set.provenance();
     html! {
         footer.wrap {
-            "Baked by " (origin.generator) ", numerics " (origin.numerics)
-            @if !origin.license.is_empty() { ", licence " (origin.license) }
+            "Baked by " (texts::words(&origin.generator)) ", numerics " (origin.numerics)
+            @if !origin.license.is_empty() { ", licence " (texts::words(&origin.license)) }
             ". Drawn by microfacet-bake " (env!("CARGO_PKG_VERSION")) "."
         }
     }

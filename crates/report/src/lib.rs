@@ -18,9 +18,11 @@ mod head;
 mod overview;
 mod page;
 pub mod plot;
+mod scripts;
 mod served;
 mod sphere;
 mod subjects;
+mod texts;
 mod validated;
 pub mod words;
 

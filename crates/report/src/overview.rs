@@ -10,12 +10,13 @@ use super::Source;
 use super::by_lobe::by_lobe;
 use super::drawing::{code, error, symbols, table};
 use super::served::{Served, served};
+use super::texts;
 use crate::words::table::{albedos, axis, covers, holds, normals, precision};
 use crate::words::{bytes, certificate, count};
 
 /// Most rows of a table of the page; a library has thousands of materials.
 const ROWS: usize = 200;
-/// Tables whose axes and certificates are listed.
+/// Tables whose axes and certificates are listed, and conventions of the file.
 const DETAILS: usize = 40;
 /// Bytes of a recipe that are shown.
 const RECIPE: usize = 16 << 10;
@@ -40,7 +41,7 @@ fn ranges(set: &Tables) -> Markup {
             @for (name, lines) in [("visible normals", normals(set)), ("albedo", albedos(set.tables()))] {
                 div {
                     dt { (name) }
-                    @for line in &lines { dd { (symbols(line)) } }
+                    @for line in &lines { dd { (texts::words(&symbols(line))) } }
                     @if lines.is_empty() { dd { "none" } }
                 }
             }
@@ -63,8 +64,8 @@ fn materials(set: &Tables) -> Markup {
     let rows = html! {
         @for Served { name, words, lobe, albedo, bytes: size } in shown {
             tr {
-                th scope="row" { bdi { (name) } }
-                @for cell in words { td { (symbols(cell)) } }
+                th scope="row" { (texts::name(name)) }
+                @for cell in words { td { (texts::name(&symbols(cell))) } }
                 @for part in [lobe, albedo] { td { (part.what) } }
                 td.number { (bytes(*size)) }
             }
@@ -99,16 +100,19 @@ fn skipped(set: &Tables, all: &[Served]) -> Markup {
             p { "Nothing: every material of the set has tables of normals and of albedo." }
         } @else {
             ul.skipped {
-                @for (of, why, names) in &reasons {
+                @for (of, why, names) in reasons.iter().take(REASONS) {
                     li {
-                        b { (of) } ": " (code(why)) " ("
+                        b { (of) } ": " (code(&texts::cut(why, REASON))) " ("
                         @for (i, name) in names.iter().take(NAMES).enumerate() {
                             @if i > 0 { ", " }
-                            bdi { (name) }
+                            (texts::name(name))
                         }
                         @if names.len() > NAMES { " and " (names.len() - NAMES) " more" }
                         ")"
                     }
+                }
+                @if reasons.len() > REASONS {
+                    li { (count(reasons.len() - REASONS, "more reason")) }
                 }
             }
         }
@@ -124,6 +128,9 @@ fn skipped(set: &Tables, all: &[Served]) -> Markup {
 
 /// Names of materials after a reason.
 const NAMES: usize = 12;
+/// Reasons, and letters of one.
+const REASONS: usize = 40;
+const REASON: usize = 400;
 
 fn tables(set: &Tables) -> Markup {
     let all = set.tables();
@@ -137,7 +144,7 @@ fn tables(set: &Tables) -> Markup {
         (count(all.len(), "table")) ", " (bytes(total))
         ". The error is the largest that was measured off the nodes when the table was baked."
     };
-    let head: [&[&str]; 2] = [&["table", "γ", "σ", "nodes", "type", "largest error"], &["bytes"]];
+    let head: [&[&str]; 2] = [&["table", "largest error", "γ", "σ", "nodes", "type"], &["bytes"]];
     let rows = html! { @for table in all.iter().take(ROWS) { (row(table)) } };
     html! {
         h3 { "Tables" }
@@ -162,19 +169,19 @@ fn row(table: &Table) -> Markup {
     html! {
         tr {
             th scope="row" {
-                bdi { (table.name) } br;
-                span.muted { (symbols(&holds(table))) }
+                (texts::words(&symbols(&holds(table)))) br;
+                code.muted { (texts::name(&table.name)) }
             }
-            td { (symbols(&gamma)) }
-            td { (symbols(&sigma)) }
-            td { (nodes.join("\u{a0}×\u{a0}")) }
-            td { (precision(table.precision)) }
             td {
                 @match table.certificate.largest() {
                     Some((what, max)) => { (certificate::column(what)) " " (error(max)) }
                     None => "not measured",
                 }
             }
+            td { (symbols(&gamma)) }
+            td { (symbols(&sigma)) }
+            td { (nodes.join("\u{a0}×\u{a0}")) }
+            td { (precision(table.precision)) }
             td.number { (bytes(table.stored_bytes())) }
         }
     }
@@ -182,12 +189,12 @@ fn row(table: &Table) -> Markup {
 
 fn details(table: &Table) -> Markup {
     html! {
-        h4 { bdi { (table.name) } }
+        h4 { code { (texts::name(&table.name)) } }
         ul {
             @for one in &table.axes {
-                li { b { bdi { (one.name) } } ": " (symbols(&axis(one))) }
+                li { b { (texts::name(&one.name)) } ": " (symbols(&axis(one))) }
             }
-            li { "channels: " (table.channels.join(", ")) }
+            li { "channels: " (texts::words(&table.channels.join(", "))) }
             @for line in certificate::lines(&table.certificate) { li { (symbols(&line)) } }
         }
     }
@@ -199,14 +206,14 @@ fn origin(origin: &Provenance) -> Markup {
             summary { "Where it comes from" }
             dl {
                 dt { "baked by" }
-                dd { (origin.generator) ", numerics " (origin.numerics) }
+                dd { (texts::words(&origin.generator)) ", numerics " (origin.numerics) }
                 @if !origin.license.is_empty() {
                     dt { "licence" }
-                    dd { (origin.license) }
+                    dd { (texts::words(&origin.license)) }
                 }
-                @for (name, value) in &origin.conventions {
-                    dt { (name) }
-                    dd { (value) }
+                @for (name, value) in origin.conventions.iter().take(DETAILS) {
+                    dt { (texts::name(name)) }
+                    dd { (texts::words(value)) }
                 }
             }
         }
@@ -227,11 +234,12 @@ fn origin(origin: &Provenance) -> Markup {
     }
 }
 
-/// The whole lines of a recipe that are shown.
+/// The whole lines of a recipe that are shown, or of a line that is longer the beginning.
 fn beginning(recipe: &str) -> &str {
-    if recipe.len() <= RECIPE {
-        return recipe;
+    let end = (0..=RECIPE.min(recipe.len())).rev().find(|&end| recipe.is_char_boundary(end));
+    let shown = &recipe[..end.unwrap_or(0)];
+    match shown.rfind('\n') {
+        Some(end) if shown.len() < recipe.len() => &shown[..=end],
+        _ => shown,
     }
-    let end = recipe.as_bytes()[..RECIPE].iter().rposition(|&byte| byte == b'\n');
-    &recipe[..end.map_or(0, |end| end + 1)]
 }

@@ -2,15 +2,17 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
+use microfacet_baker::escape::lines;
 use microfacet_baker::progress::Meter;
 
 use super::by_lobe::by_lobe;
+use super::scripts::{policy, verbatim};
 use super::subjects::Subjects;
+use super::texts;
 use super::{ReportError, Source, curves, energy, errors, head, overview, sphere, validated};
 
-/// The content security policy: the page loads nothing from elsewhere.
-const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
-                      script-src 'unsafe-inline'; img-src data: blob:";
+/// The script of what is outside the sections.
+const SCRIPT: &str = concat!(include_str!("theme.js"), include_str!("contents.js"));
 
 /// A part of the page with a heading of its own.
 struct Section {
@@ -26,12 +28,19 @@ pub(super) fn page(source: &Source, meter: &Meter) -> Result<String, ReportError
     let set = by_lobe(source.set);
     let lobes = &Source { set: &set, ..*source };
     let subjects = Subjects::of(&set);
-    let (look, scripts) = match sphere::parts(lobes, &subjects, meter)? {
-        Some(parts) => (parts.body, parts.scripts),
-        None => (html! {}, html! {}),
-    };
+    let (mut look, mut data, mut scripts) = (html! {}, html! {}, vec![SCRIPT]);
+    if let Some(parts) = sphere::parts(lobes, &subjects, meter)? {
+        (look, data) = (parts.body, parts.data);
+        scripts.push(parts.script);
+    }
     let sections = [
-        Section { id: "look", title: "Look", lead: "", content: look },
+        Section {
+            id: "look",
+            title: "Look",
+            lead: "The roughness σ sets how wide a highlight is, the shape γ how far it glows: \
+                   γ\u{a0}=\u{a0}2 is GGX, ∞ is Beckmann, and less than 2 has longer tails.",
+            content: look,
+        },
         Section {
             id: "baked",
             title: "What was baked",
@@ -41,7 +50,7 @@ pub(super) fn page(source: &Source, meter: &Meter) -> Result<String, ReportError
         Section {
             id: "curves",
             title: "Masking and albedo",
-            lead: "Smith's G1 is the share of facets that a view sees unmasked; the directional \
+            lead: "Facets mask each other: G1 is the share of them that a view sees. The directional \
                    albedo E is the share of light that one bounce returns if facets reflect all of \
                    it. Each lobe is shown beside GGX and Beckmann of the same roughness σ.",
             content: curves::section(lobes, &subjects),
@@ -77,9 +86,9 @@ pub(super) fn page(source: &Source, meter: &Meter) -> Result<String, ReportError
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
-                meta http-equiv="Content-Security-Policy" content=(POLICY);
+                meta http-equiv="Content-Security-Policy" content=(policy(&scripts));
                 meta name="generator" content=(concat!("microfacet-bake ", env!("CARGO_PKG_VERSION")));
-                title { (source.name) " · microfacet-bake" }
+                title { (texts::short(source.name)) " · microfacet-bake" }
                 style { (PreEscaped(include_str!("style.css"))) }
             }
             body {
@@ -96,12 +105,13 @@ pub(super) fn page(source: &Source, meter: &Meter) -> Result<String, ReportError
                     @for section in sections { (section.html()) }
                 }
                 (head::foot(source))
-                script type="module" { (PreEscaped(include_str!("theme.js"))) }
-                (scripts)
+                (data)
+                @for script in &scripts { script type="module" { (verbatim(script)) } }
             }
         }
     };
-    Ok(page.into_string())
+    // The program's own text has no character that is not seen, but names of a file may have some.
+    Ok(lines(&page.into_string()).into_owned())
 }
 
 impl Section {
@@ -109,8 +119,8 @@ impl Section {
         let title = format!("{}-title", self.id);
         html! {
             section id=(self.id) aria-labelledby=(title) {
-                h2 id=(title) .visually-hidden[self.lead.is_empty()] { (self.title) }
-                @if !self.lead.is_empty() { p { (self.lead) } }
+                h2 id=(title) { (self.title) }
+                p { (self.lead) }
                 (self.content)
             }
         }

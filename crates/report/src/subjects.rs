@@ -1,6 +1,9 @@
 //! What of a set is shown: shapes of the sphere, and lobes with curves and pictures.
 
+use std::f64::consts::FRAC_PI_2;
+
 use microfacet_core::shape::gamma_of_s;
+use microfacet_sampler::albedo::Albedo;
 use microfacet_sampler::{Masking, Tables};
 use microfacet_tables::MaterialEntry;
 
@@ -48,6 +51,9 @@ pub(super) struct Shown {
     pub(super) entry: Option<MaterialEntry>,
 }
 
+/// Directions of the view for a lobe that is not round: azimuth in radians, and name.
+pub(super) const ALONG: [(f64, &str); 2] = [(0.0, "along x"), (FRAC_PI_2, "along y")];
+
 pub(super) fn shape(gamma: f64) -> String {
     unbroken(&format!("γ = {}", symbols(&number(gamma))))
 }
@@ -86,6 +92,12 @@ impl Shown {
     /// σ of a round lobe, or of the round lobe that stands in for another.
     pub(super) fn round_sigma(&self) -> f64 {
         self.entry.as_ref().map_or(self.sigma[0], |entry| entry.lobe.round_sigma())
+    }
+
+    /// The albedo of its own table, if it is not round and the set has one.
+    pub(super) fn own_albedo(&self, set: &Tables) -> Option<Albedo> {
+        let entry = self.entry.as_ref().filter(|_| self.sigma[0] != self.sigma[1])?;
+        set.material_albedo(&entry.name).ok().filter(|_| !entry.lobe.tabulated().is_family())
     }
 
     /// The form of masking that it states, or the default.

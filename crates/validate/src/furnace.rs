@@ -84,6 +84,45 @@ pub fn furnace(
     Ok(Furnace { sigma, gamma, cos_theta, single, turquin, kulla_conty })
 }
 
+/// Runs the furnace for a lobe of σx and σy and a view at cos θ and azimuth φ (radians from the x
+/// axis), with the albedo of that lobe; cos θ is clamped as by [`furnace`]. σ of the result is
+/// √(σx σy).
+///
+/// # Errors
+/// [`MaterialError::Gamma`] for γ outside the family.
+///
+/// # Panics
+/// Unless both σ are positive.
+pub fn anisotropic(
+    albedo: &Albedo,
+    sigma: [f64; 2],
+    gamma: f64,
+    cos_theta: f64,
+    phi: f64,
+) -> Result<Furnace, MaterialError> {
+    /// Azimuths of lights in a quarter of a turn, which repeats mirrored.
+    const AZIMUTHS: u32 = 16;
+    let cos = (cos_theta as f32).clamp(1e-30, 1.0);
+    let at = |sin: f32, cos: f32, phi: f64| {
+        let (s, c) = libm::sincos(phi);
+        Vec3::new(sin * c as f32, sin * s as f32, cos)
+    };
+    let v = at(direction(cos).x, cos, phi);
+    let shape = model::Shape::new(gamma).map_err(|_| MaterialError::Gamma(gamma))?;
+    let exact = model::AlbedoIntegrator::new(shape, 1e-6)
+        .reflection_anisotropic(sigma, f64::from(cos), phi, |_| [1.0])
+        .expect("both sigma are positive, and the cosine is that of a view");
+    let [single] = exact.of(albedo.masking());
+    let lobe = |i: u32| {
+        let phi = std::f64::consts::FRAC_PI_2 * (f64::from(i) + 0.5) / f64::from(AZIMUTHS);
+        over_lights(|sin, cos| f64::from(albedo.compensation(v, at(sin, cos, phi))))
+    };
+    let kulla_conty = single + (0..AZIMUTHS).map(lobe).sum::<f64>() / f64::from(AZIMUTHS);
+    let turquin = single * f64::from(albedo.turquin(v, 1.0));
+    let sigma = (sigma[0] * sigma[1]).sqrt();
+    Ok(Furnace { sigma, gamma, cos_theta, single, turquin, kulla_conty })
+}
+
 /// ∫ of the compensating lobe times the cosine over all lights.
 fn lobe(albedo: &Albedo, cos_theta: f32) -> f64 {
     let v = direction(cos_theta);

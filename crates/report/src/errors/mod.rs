@@ -12,6 +12,7 @@ use microfacet_sampler::Tables;
 use microfacet_tables::Table;
 
 use super::drawing::SIZE;
+use super::texts;
 use super::{ReportError, Source};
 use crate::error_map;
 use crate::error_map::{ErrorMap, Sides, Unmeasured, measure, sides};
@@ -107,7 +108,7 @@ pub(super) fn section(source: &Source, meter: &Meter) -> Result<Markup, ReportEr
             ul {
                 @for (table, why) in missing.iter().take(IN_WORDS) {
                     li {
-                        code { (table.name) } ": " (words::sentence(why)) @for line in words::lines(table) { " " (line) }
+                        code { (texts::name(&table.name)) } ": " (words::sentence(why)) @for line in words::lines(table) { " " (line) }
                     }
                 }
                 @if missing.len() > IN_WORDS { li { (missing.len() - IN_WORDS) " more" } }
@@ -121,7 +122,7 @@ fn figure(table: &Table, map: &ErrorMap, scale: &Axis) -> Markup {
         figure class="map" {
             (PreEscaped(drawing::drawn(table, map, scale)))
             figcaption {
-                strong { (words::what(table)) } " " code { (table.name) } ". "
+                strong { (words::what(table)) } " " code { (texts::name(&table.name)) } ". "
                 (words::certified(table)) " " (words::map(table, map))
             }
         }

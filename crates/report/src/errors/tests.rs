@@ -25,7 +25,7 @@ fn of_the_default_set_each_table_has_a_map_that_is_small_and_keeps_to_its_certif
     let figures = figures(&html);
     assert_eq!(figures.len(), 12);
     for table in set.tables() {
-        let name = format!("<code>{}</code>", table.name);
+        let name = format!("<code>{}</code>", texts::name(&table.name).0);
         assert!(figures.iter().any(|figure| figure.contains(&name)), "{name}");
     }
     for figure in figures {

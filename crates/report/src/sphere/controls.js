@@ -109,27 +109,29 @@ function listen(sphere, plot) {
         update(false);
     };
     controls.shape.addEventListener('input', () => {
-        state.stop = Number(controls.shape.value);
+        state = { ...state, stop: Number(controls.shape.value) };
         update(true);
     });
     for (const [i, axis] of ['x', 'y'].entries()) {
         controls[axis].addEventListener('input', () => {
             const value = Number(short(fromSlider(controls[axis])));
-            state.sigma = controls.link.checked ? [value, value] : state.sigma.with(i, value);
+            const sigma = controls.link.checked ? [value, value] : state.sigma.with(i, value);
+            state = { ...state, sigma };
             if (controls.link.checked) controls[i ? 'x' : 'y'].value = controls[axis].value;
             update(true);
         });
     }
     controls.link.addEventListener('change', () => {
-        if (controls.link.checked) state.sigma = [state.sigma[0], state.sigma[0]];
+        const [x] = state.sigma;
+        if (controls.link.checked) state = { ...state, sigma: [x, x] };
         update(false);
     });
     controls.metal.addEventListener('change', () => {
-        state.reflectance = Number(controls.metal.value);
+        state = { ...state, reflectance: Number(controls.metal.value) };
         update(false);
     });
     controls.compensation.addEventListener('change', () => {
-        state.compensation = controls.compensation.checked;
+        state = { ...state, compensation: controls.compensation.checked };
         update(false);
     });
     controls.material.addEventListener('change', () => {
@@ -175,20 +177,38 @@ async function begin() {
     const { upload, averages } = await loadTables();
     const sphere = new Sphere(canvas, upload, averages);
     if (!sphere.start()) return;
-    // What is drawn here, or pictures.
+    // What is drawn here, or pictures. The canvas has its place from the start, but the picture is
+    // shown until the canvas is as clean, or shows something else.
+    const still = $('sphere-still');
+    const reveal = () => {
+        still.hidden = true;
+        canvas.classList.remove('waiting');
+    };
     const live = (is) => {
         for (const it of ['sphere', 'sphere-controls', 'lobe-live']) $(it).hidden = !is;
-        for (const it of ['sphere-still', 'lobe-still']) $(it).hidden = is;
-        if (!is) $('sphere-samples').textContent = '';
+        $('lobe-still').hidden = is;
+        if (is) return;
+        still.hidden = false;
+        canvas.classList.add('waiting');
+        $('sphere-samples').textContent = '';
     };
     live(true);
     const plot = new LobePlot($('lobe-live'), sphere);
     sphere.onprogress = (index, samples) => {
-        $('sphere-samples').textContent = `${index} of ${samples} samples`;
+        const [size, enough] = [still.getAttribute('width'), still.dataset.samples].map(Number);
+        const coarse = sphere.size < size;
+        if (state !== opening || (index >= enough && !coarse)) reveal();
+        $('sphere-samples').textContent = still.hidden ? `${index} of ${samples} samples`
+            : coarse ? 'A picture; move a control, and the sphere is drawn live in fewer pixels'
+                : `A picture; ${index} of ${enough} samples are drawn to replace it`;
     };
     const { stop, sigma, reflectance } = data.materials[data.opening];
     state = merge({ ...ofAddress() });
     if (!location.hash) state = { ...state, stop, sigma: [...sigma], reflectance };
+    // The address may be that of another look, or that of the picture.
+    const isPicture = state.stop === stop && state.reflectance === reflectance
+        && state.compensation && state.sigma.every((x, i) => x === sigma[i]);
+    const opening = isPicture ? state : null;
     controls.link.checked = state.sigma[0] === state.sigma[1];
     const update = listen(sphere, plot);
     update(false);

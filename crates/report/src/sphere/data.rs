@@ -8,6 +8,7 @@ use flate2::Compression;
 use flate2::write::DeflateEncoder;
 use glam::Vec3;
 use half::f16;
+use microfacet_baker::escape;
 use microfacet_core::Masking;
 use microfacet_export::texture::{Along, Place, TexelAxis, place, shader_coordinates};
 use microfacet_export::{Shape, WIDTH, append_some};
@@ -18,6 +19,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::super::subjects::{Shown, Subjects, shape};
+use super::super::texts;
 use super::scene::Look;
 
 pub(super) const SIGMA: [f64; 2] = [0.01, 1.0];
@@ -25,7 +27,7 @@ pub(super) const SIGMA: [f64; 2] = [0.01, 1.0];
 const TEXELS: [usize; 2] = [32, 48];
 /// Averages along √σ from 1/48 on: at σ = 0, a mirror, nothing is lost.
 const AVERAGES: usize = 48;
-/// The metal of lobes that state no reflectance of a conductor.
+/// The metal of lobes that state no reflectance.
 pub(super) const UNSTATED: Metal = Metal::Gold;
 
 /// All that the script reads.
@@ -65,15 +67,24 @@ fn stop(subjects: &Subjects, gamma: f64) -> usize {
     subjects.stops.iter().position(|&stop| stop >= gamma).unwrap_or(subjects.stops.len() - 1)
 }
 
-/// Whether a lobe is shown with another reflectance than its material states.
+/// Whether a lobe is shown with a reflectance that its material does not state.
 pub(super) fn is_unstated(shown: &Shown) -> bool {
-    shown.entry.as_ref().and_then(conductor_of).is_none()
+    shown.entry.as_ref().and_then(reflecting).is_none()
 }
 
-/// The reflectance that a material states of a conductor.
-fn conductor_of(entry: &MaterialEntry) -> Option<Reflectance> {
-    use Reflectance::{Conductor, Mirror, Schlick};
-    entry.fresnel.filter(|fresnel| matches!(fresnel, Mirror | Schlick(_) | Conductor { .. }))
+/// Whether a lobe is that of a dielectric, of which the sphere shows what it reflects.
+pub(super) fn is_dielectric(shown: &Shown) -> bool {
+    let states = shown.entry.as_ref().and_then(|entry| entry.fresnel);
+    states.is_some_and(|fresnel| fresnel.middle_index().is_some())
+}
+
+/// The reflectance that a material states; of a dielectric, Schlick's with the same F0.
+fn reflecting(entry: &MaterialEntry) -> Option<Reflectance> {
+    let fresnel = entry.fresnel.filter(|fresnel| fresnel.side().is_none())?;
+    Some(fresnel.middle_index().map_or(fresnel, |eta| {
+        let root = (eta - 1.0) / (eta + 1.0);
+        Reflectance::Schlick([root * root; 3])
+    }))
 }
 
 /// The metal that a name mentions: "brushed aluminium".
@@ -84,7 +95,7 @@ pub(super) fn metal_of(name: &str) -> Option<Metal> {
 
 /// The reflectance on the sphere: the material's own, of the metal in its name, or [`UNSTATED`].
 fn fresnel(shown: &Shown) -> Reflectance {
-    let own = shown.entry.as_ref().and_then(conductor_of);
+    let own = shown.entry.as_ref().and_then(reflecting);
     own.unwrap_or_else(|| metal_of(&shown.name).unwrap_or(UNSTATED).into())
 }
 
@@ -190,14 +201,14 @@ impl Data {
             Metal::ALL.map(|metal| Choice::new(metal.name(), metal.into())).into();
         reflectances.push(Choice::new("mirror", Reflectance::Mirror));
         let material = |shown: &Shown| {
-            let own = Choice::new(&shown.name, fresnel(shown));
+            let own = Choice::new(&texts::short(&shown.name), fresnel(shown));
             let known = reflectances.iter().position(|other| own.is_same(other));
             let reflectance = known.unwrap_or_else(|| {
                 reflectances.push(own);
                 reflectances.len() - 1
             });
             let (stop, sigma) = (stop(subjects, shown.gamma), look(subjects, shown).sigma);
-            json!({ "name": shown.name, "stop": stop, "sigma": sigma, "reflectance": reflectance })
+            json!({ "stop": stop, "sigma": sigma, "reflectance": reflectance })
         };
         let materials: Vec<Value> = subjects.shown.iter().map(material).collect();
         let index = |gamma| stops.iter().position(|&stop| stop == gamma).expect("a slice");
@@ -232,7 +243,7 @@ impl Data {
             "opening": subjects.opening(),
         });
         Ok(Self {
-            json: json.to_string().replace('<', "\\u003c"),
+            json: escape::json(&json.to_string()).replace('<', "\\u003c"),
             reflectances: reflectances.into_iter().map(|choice| choice.name).collect(),
         })
     }

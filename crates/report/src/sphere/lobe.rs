@@ -9,6 +9,7 @@ use maud::{Markup, html};
 use microfacet_sampler::lobe::Reflecting;
 use microfacet_sampler::{Lobe, Masking, MaterialError, Tables};
 
+use super::super::texts;
 use super::scene::Look;
 
 /// The length of the longest arrow, as `REACH` of lobe.js, and the number of lights of a picture.
@@ -64,7 +65,7 @@ pub(super) fn live() -> Markup {
             figcaption #lobe-caption {
                 "Light in the plane of incidence, f cos\u{a0}θ of one bounce with F\u{a0}=\u{a0}1: "
                 span #lobe-name {} ", beside GGX and Beckmann of the same σ. The view is at "
-                span.of-angle {} span.screen { "; drag it" } ", and the outer circle at "
+                span.of-angle {} span.screen { "; drag it" } ". At the outer circle f cos\u{a0}θ is "
                 span.of-scale {} "."
             }
         }
@@ -128,7 +129,7 @@ fn still(lobes: &[Lobe; 3], degrees: u32, name: &str) -> Markup {
                     fill="currentColor" {} },
                 &id,
             ))
-            figcaption id=(id) { (name) ", view at θ\u{a0}=\u{a0}" (degrees) "°" }
+            figcaption id=(id) { (texts::name(name)) ", view at θ\u{a0}=\u{a0}" (degrees) "°" }
         }
     }
 }

@@ -19,9 +19,11 @@ use microfacet_baker::progress::{Meter, Stage};
 use microfacet_export::for_webgl;
 use microfacet_sampler::{BindError, Masking, Tables};
 
+use super::scripts::verbatim;
 use super::subjects::{Shown, Subjects};
+use super::texts;
 use super::{ReportError, Source};
-use data::{Data, SIGMA, UNSTATED, is_unstated, label, look};
+use data::{Data, SIGMA, UNSTATED, is_dielectric, is_unstated, label, look};
 use scene::Scene;
 pub use scene::{Film, Look, tangent_frame};
 pub use tone::srgb;
@@ -40,8 +42,10 @@ const SECONDS: [f64; 2] = [1.7, 0.05];
 pub(super) struct Parts {
     /// Canvas, controls and pictures.
     pub(super) body: Markup,
-    /// Data and script, at the end of the page.
-    pub(super) scripts: Markup,
+    /// What the script reads, at the end of the page.
+    pub(super) data: Markup,
+    /// The script.
+    pub(super) script: &'static str,
 }
 
 /// The estimated seconds of [`parts`] on the current threads.
@@ -82,7 +86,7 @@ pub(super) fn parts(
         (gallery(subjects, &pictures))
         (differences(subjects))
     };
-    Ok(Some(Parts { body, scripts: scripts(&data) }))
+    Ok(Some(Parts { body, data: data_of(&data), script: SCRIPT }))
 }
 
 /// Pictures as data URLs, one for each lobe.
@@ -112,13 +116,13 @@ fn unbound(why: BindError) -> ReportError {
     }
 }
 
-/// The canvas of the sphere, and the picture that replaces it where there is no WebGL 2.
+/// The picture of the sphere, and over it the canvas that takes its place once it is as clean.
 fn stage_of(picture: &str, name: &str) -> Markup {
     html! {
         div.stage {
-            img #sphere-still src=(picture) alt={ "A sphere of " (name) }
-                width=(PICTURE.size) height=(PICTURE.size);
-            canvas #sphere role="img" aria-label={ "A sphere of " (name) } hidden
+            img #sphere-still src=(picture) alt={ "A sphere of " (texts::short(name)) }
+                width=(PICTURE.size) height=(PICTURE.size) data-samples=(SAMPLES);
+            canvas #sphere .waiting role="img" aria-label={ "A sphere of " (texts::short(name)) } hidden
                 width=(PICTURE.size) height=(PICTURE.size) {}
             p #sphere-samples .samples {}
         }
@@ -133,7 +137,7 @@ fn controls(subjects: &Subjects, data: &Data) -> Markup {
                 select #material {
                     option value="-1" { "as set below" }
                     @for (i, shown) in subjects.shown.iter().enumerate() {
-                        option value=(i) { (shown.name) }
+                        option value=(i) { (texts::short(&shown.name)) }
                     }
                 }
             }
@@ -164,7 +168,7 @@ fn controls(subjects: &Subjects, data: &Data) -> Markup {
                 label for="sigma-link" { "σx and σy together" }
             }
             div.row {
-                label for="metal" { "Metal" }
+                label for="metal" { "Reflectance" }
                 select #metal {
                     @for (i, name) in data.reflectances.iter().enumerate() {
                         option value=(i) { (name) }
@@ -194,12 +198,13 @@ fn gallery(subjects: &Subjects, pictures: &[String]) -> Markup {
         @if pictures.len() > 1 { div.gallery {
             @for (i, (shown, picture)) in subjects.shown.iter().zip(pictures).enumerate() {
                 figure.card {
-                    button type="button" data-material=(i) aria-label={ "Show " (shown.name) } {
+                    button type="button" data-material=(i) aria-label={ "Show " (texts::short(&shown.name)) } {
                         img src=(picture) alt="" width=(PICTURE.size) height=(PICTURE.size);
                     }
                     figcaption {
-                        strong { (shown.name) } br;
+                        strong { (texts::name(&shown.name)) } br;
                         (shown.description())
+                        @if is_dielectric(shown) { ", its reflection alone" }
                     }
                 }
             }
@@ -223,21 +228,28 @@ fn differences(subjects: &Subjects) -> Markup {
             @if any(&is_other) { ", also of materials that state another" }
             ". "
             @if any(&is_unstated) {
-                "What states no conductor is shown in the metal of its name, or in "
+                "A material without a Fresnel term is shown in the metal of its name, or in "
                 (UNSTATED.name()) ". "
+            }
+            @if any(&is_dielectric) {
+                "Of glass and the like the sphere shows what is reflected, with Schlick’s term, and \
+                 nothing of what is transmitted. "
             }
             @if any(&is_beyond) { "σ is kept within " (SIGMA[0]) " and " (SIGMA[1]) "." }
         }
     }
 }
 
-/// Text of a script element, which must not contain the end of the element.
-fn verbatim(text: &str) -> PreEscaped<&str> {
-    assert!(!text.contains("</"), "the program's own text ends no element");
-    PreEscaped(text)
-}
+/// The script of the sphere, without its data.
+const SCRIPT: &str = concat!(
+    include_str!("gl.js"),
+    include_str!("sphere.js"),
+    include_str!("lobe.js"),
+    include_str!("controls.js"),
+);
 
-fn scripts(data: &Data) -> Markup {
+/// Shaders, and what the script is given.
+fn data_of(data: &Data) -> Markup {
     let common =
         format!("{}{}{}", studio::constants(), random::constants(), data::albedo_coordinates());
     let scene = format!(
@@ -254,18 +266,11 @@ fn scripts(data: &Data) -> Markup {
         ("sphere-lobe", include_str!("lobe.frag").into()),
         ("sphere-present", include_str!("present.frag").into()),
     ];
-    let script = concat!(
-        include_str!("gl.js"),
-        include_str!("sphere.js"),
-        include_str!("lobe.js"),
-        include_str!("controls.js"),
-    );
     html! {
         @for (id, text) in &shaders {
             script id=(id) type="x-shader/x-fragment" { (verbatim(text)) }
         }
         script #sphere-data type="application/json" { (PreEscaped(&data.json)) }
-        script type="module" { (verbatim(script)) }
     }
 }
 

@@ -6,7 +6,8 @@ use maud::{Markup, html};
 
 use microfacet_validate::record::{Record, Returned, Tested, identity};
 
-use super::drawing::{error, symbols, table};
+use super::drawing::{code, error, symbols, table};
+use super::texts;
 use super::{ReportError, Source};
 use crate::words::{command, count, number};
 
@@ -14,6 +15,11 @@ use crate::words::{command, count, number};
 const WORST: usize = 5;
 /// Tables that were not tested, by name.
 const NAMED: usize = 12;
+/// Letters of what was not tested, and why.
+const WORDS: usize = 400;
+/// Rows of the table of furnaces.
+const FURNACES: usize = 24;
+
 /// Refuses the validation of another set.
 pub(super) fn check(source: &Source) -> Result<(), ReportError> {
     let Some(record) = source.validation else { return Ok(()) };
@@ -79,7 +85,7 @@ fn results(record: &Record) -> Markup {
         @if !record.not_tested.is_empty() {
             h3 { "Not tested" }
             ul {
-                @for what in record.not_tested.iter().take(NAMED) { li { bdi { (what) } } }
+                @for what in record.not_tested.iter().take(NAMED) { li { bdi { (code(&texts::cut(what, WORDS))) } } }
                 @if record.not_tested.len() > NAMED {
                     li { (record.not_tested.len() - NAMED) " more" }
                 }
@@ -158,9 +164,9 @@ fn furnaces(record: &Record) -> Markup {
          table of albedos; 1 ± " (number(record.furnace_tolerance)) " is allowed."
     };
     let rows = html! {
-        @for Returned { masking, points, lowest, highest } in &record.furnaces {
+        @for Returned { masking, points, lowest, highest } in record.furnaces.iter().take(FURNACES) {
             tr {
-                th scope="row" { bdi { (masking) } }
+                th scope="row" { (texts::name(masking)) }
                 td.number { (points) }
                 @for share in [*lowest, *highest] { (cell(share)) }
             }
@@ -169,5 +175,8 @@ fn furnaces(record: &Record) -> Markup {
     html! {
         h3 { "White furnaces" }
         (table("White furnaces", &caption, [&["masking"], &["points", "lowest", "highest"]], &rows))
+        @if record.furnaces.len() > FURNACES {
+            p.note { "and " (count(record.furnaces.len() - FURNACES, "more furnace")) }
+        }
     }
 }

@@ -61,7 +61,7 @@ pub(super) fn masking(record: &Record) -> Markup {
         .map(|i| ((i as f64 + 0.5) / views, if sorted[i] < LEAST { LEAST } else { sorted[i] }));
     let largest = sorted.last().copied().unwrap_or(f64::NAN);
     let high = if largest.is_finite() { largest.max(HIGH) } else { 1.0 };
-    let x = Axis::linear("share of the configurations with a smaller error", 0.0, 1.0);
+    let x = Axis::linear("share of views with a smaller error", 0.0, 1.0);
     let y = Axis::log("error of G1", LEAST, (2.0 * high).min(f64::MAX)).coarse();
     let panel = Panel::new("Error of G1", x, y, [Curve::new(Key::Nth(0), "", points)]);
     let label = format!("Sorted errors of G1 of {views} configurations, up to {largest:.2e}");

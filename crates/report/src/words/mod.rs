@@ -1,5 +1,5 @@
 //! Sets, tables and materials in words, for commands and pages. Texts from files are repeated
-//! unchanged, and escaped where they are shown.
+//! unchanged; [`microfacet_baker::escape`] makes them safe where they are shown.
 
 pub mod certificate;
 pub mod command;

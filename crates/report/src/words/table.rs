@@ -13,7 +13,7 @@ use super::{count, joined, number, range};
 /// What a table holds, and its lobe unless that is the whole family.
 pub fn holds(table: &Table) -> String {
     let kind = match table.kind {
-        Kind::Shadowing | Kind::RadialShadowing => "Smith's G1 of a view",
+        Kind::Shadowing | Kind::RadialShadowing => "masking G1 of a view",
         Kind::VisibleSlope | Kind::RadialSlope => {
             "slopes of visible normals, in the plane of incidence"
         }

@@ -1,10 +1,12 @@
 //! Writes materials as a recipe.
 
+use std::borrow::Cow;
 use std::fmt::Write as _;
 
 use microfacet_tables::{Interval, LobeSpec, MaterialEntry};
 
 use crate::distribution::{Distribution, Named};
+use crate::escape;
 use crate::input::angles::Angles;
 use crate::scene::{Haze, Reflectance, Roughness};
 
@@ -78,8 +80,12 @@ fn outside(label: &str) -> Vec<String> {
     [format!("distribution = {}", quoted(kind.name()))].into_iter().chain(values).collect()
 }
 
+/// A string of TOML in which every character is seen.
 pub(super) fn quoted(text: &str) -> String {
-    toml::Value::from(text).to_string()
+    match escape::line(text) {
+        Cow::Borrowed(seen) => toml::Value::from(seen).to_string(),
+        Cow::Owned(_) => escape::string(text),
+    }
 }
 
 /// A number or a range; Rust's shortest form that reads back to the same bits is valid TOML.

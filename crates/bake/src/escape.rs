@@ -1,23 +1,28 @@
-//! Makes text from files safe to print: names in a scene or a table file may hold characters that
-//! control a terminal, or that reverse the order of text.
+//! Makes text from files safe to show: names in a scene or a table file may hold characters that
+//! control a terminal, that reverse the order of text, or that are not seen.
 
 use std::borrow::Cow;
 
 /// A text of several lines, with every hidden character written out, as `\u{1b}`.
-pub(super) fn lines(text: &str) -> Cow<'_, str> {
+pub fn lines(text: &str) -> Cow<'_, str> {
     escaped(text, |c| is_hidden(c) && !matches!(c, '\n' | '\t'), char::escape_unicode)
 }
 
 /// A text of one line, with hidden characters and line breaks written out.
-pub(super) fn line(text: &str) -> Cow<'_, str> {
+pub fn line(text: &str) -> Cow<'_, str> {
     escaped(text, is_hidden, char::escape_default)
 }
 
 /// A JSON document with hidden characters as escapes of JSON; they occur in its strings alone.
-pub(super) fn json(text: &str) -> Cow<'_, str> {
+pub fn json(text: &str) -> Cow<'_, str> {
     // None is above U+FFFF, where JSON needs pairs.
     let hidden = |c: char| is_hidden(c) && c != '\n';
     escaped(text, hidden, |c| format!("\\u{:04x}", u32::from(c)).chars().collect::<Vec<_>>())
+}
+
+/// A string of TOML or JSON with its quotes, as which it reads back.
+pub fn string(text: &str) -> String {
+    json(&serde_json::Value::from(text).to_string()).into_owned()
 }
 
 fn escaped<I: IntoIterator<Item = char>>(
@@ -67,6 +72,17 @@ mod tests {
         let shown = r"go\u{200b}ld\u{feff}\u{200d}\u{2060}\u{ad}";
         assert_eq!((lines(name), line(name)), (shown.into(), shown.into()));
         assert_eq!(json(name), r"go\u200bld\ufeff\u200d\u2060\u00ad");
+    }
+
+    #[test]
+    fn a_string_reads_back_as_toml_and_as_json() {
+        let text = string(ODD);
+        assert!(!text.contains(is_hidden) && text.contains(r"\u202e\u2066\u2028∞"), "{text}");
+        assert_eq!(serde_json::from_str::<String>(&text).unwrap(), ODD);
+        assert_eq!(
+            toml::from_str::<toml::Table>(&format!("a = {text}")).unwrap()["a"].as_str(),
+            Some(ODD)
+        );
     }
 
     #[test]
