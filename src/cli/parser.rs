@@ -19,6 +19,8 @@ const NAMES: [&str; 3] = ["alpha", "roughness", "m"];
 pub(super) fn command() -> Command {
     hyphens(Cli::command().mut_subcommands(|command| match command.get_name() {
         "validate" | "sample" | "furnace" => command.args(NAMES.map(other_name)),
+        "query" => command.mut_subcommands(|quantity| quantity.args(NAMES.map(other_name))),
+        "fit" => command.arg(bare_file()),
         "bake" | "plan" => command.args(MATERIAL.map(|name| {
             let hint = "materials are described in a file: `microfacet-bake recipe` prints one to \
                         start from";
@@ -47,6 +49,18 @@ fn other_name(name: &'static str) -> Arg {
 fn refused(name: &'static str, hint: &str) -> Arg {
     let parser = UnknownArgumentValueParser::suggest(hint.to_owned());
     Arg::new(name).long(name).hide(true).value_name("X").value_parser(parser)
+}
+
+/// A file without the option that says what it is.
+fn bare_file() -> Arg {
+    let which = |file: &str| -> Result<String, String> {
+        let option = if file.ends_with(".binary") { "--merl" } else { "--input" };
+        Err(format!(
+            "write {option} before it: --input reads a CSV of angles and D, --merl files of the \
+             MERL database"
+        ))
+    };
+    Arg::new("file").value_name("FILE").hide(true).value_parser(which)
 }
 
 /// The end of a range of shapes, which is always infinity.

@@ -106,8 +106,8 @@ fn query_says_what_can_be_compared_and_what_is_covered() {
 fn query_answers_points_of_options_as_rows_of_a_file() {
     let text = "id,sigma_x,sigma_y,gamma,theta,phi\n007,.3,0.1,inf,1.2,-2\n";
     let desk = Desk::new(&[("p.csv", text), ("bad.csv", &format!("{text}8,0.3,0.1,3,9,0\n"))]);
-    let of_file = desk.json("query g1 --input p.csv --json");
-    let of_options = desk.json("query g1 --sigma 0.3,0.1 --gamma inf --theta 1.2 --phi -2 --json");
+    let of_file = desk.json("query g1 --input p.csv");
+    let of_options = desk.json("query g1 --sigma 0.3,0.1 --gamma inf --theta 1.2 --phi -2");
     for name in ["sigma_x", "gamma", "phi", "lambda_table", "g1_exact"] {
         assert_eq!(of_file[0][name], of_options[0][name], "{name}");
     }
@@ -118,8 +118,8 @@ fn query_answers_points_of_options_as_rows_of_a_file() {
     assert_eq!(rows, of_file);
 
     // D of GGX at the normal is 1/(pi sigma^2).
-    let d = desk.json("query d --sigma 0.5 --perceptual --gamma 2 --theta 0 --method exact --json");
-    let want = std::f64::consts::FRAC_1_PI * 256.0;
+    let d = desk.json("query d --sigma 0.5 --perceptual --gamma 2 --theta 0 --method exact");
+    let want = std::f64::consts::FRAC_1_PI * 16.0;
     assert!((d[0]["d_exact"].as_f64().unwrap() - want).abs() < 1e-12 * want, "{d}");
     assert_eq!(d[0]["sigma_x"], 0.25);
 

@@ -98,3 +98,43 @@ fn the_page_of_what_was_reproduced_has_whole_rows_and_commands_that_there_are() 
     let known = FIGURES.map(|listed| listed.name);
     assert!(figures.iter().all(|figure| known.contains(figure)), "{figures:?}");
 }
+
+/// Commands that stand in a line of text have options that there are; `.ci/commands` runs those of
+/// fences.
+#[test]
+fn commands_in_the_text_of_pages_have_options_that_there_are() {
+    let help: Vec<(&str, &str)> = include_str!("help.txt")
+        .split("\n$ ")
+        .filter_map(|page| page.split_once(" --help\n"))
+        .collect();
+    let mut wrong = Vec::new();
+    let mut pages = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md")];
+    files(&pages[0].with_file_name("docs"), ".md", &mut pages);
+    let mut count = 0;
+    for path in pages {
+        let text = flat(&fs::read_to_string(&path).unwrap());
+        for span in text.split('`').skip(1).step_by(2) {
+            let starts = ["microfacet-bake ", "cargo run --release -- "];
+            let Some(command) = starts.iter().find_map(|start| span.strip_prefix(start)) else {
+                continue;
+            };
+            let words: Vec<&str> = command.split_whitespace().collect();
+            // The longest name of a subcommand.
+            let named = |count: usize| {
+                let name = words.get(..count)?.join(" ");
+                help.iter().find(|(of, _)| *of == name).map(|(_, page)| page)
+            };
+            let page = named(2).or_else(|| named(1));
+            let options = words.iter().filter(|word| word.starts_with("--") && word.len() > 2);
+            for option in options {
+                let is_known = page
+                    .is_some_and(|page| page.split([' ', '\n', ',']).any(|word| word == *option));
+                if !is_known && *option != "--help" {
+                    wrong.push(format!("{}: {command}: {option}", path.display()));
+                }
+                count += 1;
+            }
+        }
+    }
+    assert!(wrong.is_empty() && count > 20, "{count}: {wrong:#?}");
+}

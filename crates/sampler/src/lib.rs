@@ -116,7 +116,10 @@
 //! - The oldest compiler is Rust 1.89; a later one is required by a new minor version only.
 //!   Versions follow semantic versioning: before 1.0 a minor version may break programs, and the
 //!   changelog says how. Other numbers than before, beyond the errors that are stated, count as a
-//!   break. [`port`] may change in any release.
+//!   break. [`port`] may change in any minor version, after 1.0 too. [What a version
+//!   promises][policy] has the rest.
+//!
+//! [policy]: https://github.com/OWNER/microfacet-bake/blob/HEAD/docs/policy.md
 
 #![cfg_attr(not(feature = "std"), no_std)]
 // What a function returns is all that it does.

@@ -46,10 +46,12 @@ pub(crate) fn write_png(
     Ok(std::fs::write(path, sheet.drawing().png()?)?)
 }
 
-/// Steps of 1/255 by which an error changes the picture.
+/// Steps of 1/255 by which an error, up or down, changes the picture. White stays white upwards,
+/// also where a single path of many met a lamp.
 pub(crate) fn steps(radiance: Vec3, error: Vec3, is_linear: bool) -> f32 {
-    let [a, b] = [radiance, radiance + error].map(|radiance| encoded(radiance, is_linear));
-    255.0 * (b - a).max_element()
+    let below = (radiance - error).max(Vec3::ZERO);
+    let [a, b, c] = [below, radiance, radiance + error].map(|at| encoded(at, is_linear));
+    255.0 * (b - a).max(c - b).max_element()
 }
 
 fn encoded(radiance: Vec3, is_linear: bool) -> Vec3 {
@@ -61,4 +63,18 @@ fn encoded(radiance: Vec3, is_linear: bool) -> Vec3 {
 /// towards 1.
 fn shoulder(x: f32) -> f32 {
     if x <= 0.5 { x } else { 1.0 - 0.5 * (1.0 - 2.0 * x).exp() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pixel_that_one_path_of_many_makes_white_is_not_done() {
+        let (mean, error) = (Vec3::splat(2.3), Vec3::splat(2.2));
+        for is_linear in [false, true] {
+            assert!(steps(mean, error, is_linear) > 100.0);
+            assert!(steps(mean, 1e-3 * error, is_linear) < 1.0);
+        }
+    }
 }

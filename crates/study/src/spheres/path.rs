@@ -43,10 +43,13 @@ impl<M: Material> Tracer<'_, M> {
             let l = hit.frame.transpose() * towards;
             let (f, of_bsdf) = hit.bsdf.eval_pdf(v, l);
             let shadow = Ray { origin: hit.point, direction: towards };
-            if f != [0.0; 3] && !self.scene.is_shadowed(&shadow) {
+            let (seen, of_lamps) = sky.seen(towards);
+            // Rounding puts some directions just outside of the rim, where no lamp has a density,
+            // and far from a highlight that of the BSDF is 0 in single precision too.
+            let is_lit = f != [0.0; 3] && of_lamps > 0.0;
+            if is_lit && !self.scene.is_shadowed(&shadow) {
                 // f next to the horizon may be the largest number: the division comes first, to
                 // keep it finite.
-                let (seen, of_lamps) = sky.seen(towards);
                 radiance += Vec3::from(f) * (l.z.abs() / (of_lamps + of_bsdf)) * seen;
             }
         }

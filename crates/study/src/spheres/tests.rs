@@ -14,7 +14,7 @@ use microfacet_sampler::{
 use microfacet_tables::Precision;
 
 use super::{Film, Limit, REACH, pixel};
-use crate::spheres::scene::Scene;
+use crate::spheres::scene::{Floor, GREY, Scene};
 use crate::spheres::sky::Sky;
 
 /// The mean radiance of a sphere in a white furnace of radiance 1: by sampling the BSDF alone and,
@@ -70,6 +70,23 @@ fn rough_diamond_shows_all_light_where_it_is_given_back() -> Result<(), Box<dyn 
     let diamond = tables.bsdf("diamond", Compensation::KullaConty, StandIn::Refused)?;
     for shown in furnaces(&diamond) {
         assert!((shown - 1.0).abs() < 0.02, "{shown}");
+    }
+    Ok(())
+}
+
+/// Directions to a lamp may round to just outside of its rim, where its density is 0, and so may
+/// be that of the BSDF: light from there was infinite.
+#[test]
+fn a_small_lamp_gives_finite_light() -> Result<(), Box<dyn Error>> {
+    const CELL: usize = 120;
+    let lobe = Tables::embedded().lobe(0.1, f64::INFINITY)?;
+    let metal = Conductor::new(lobe, ConductorFresnel::mirror(), BsdfSettings::new())?;
+    let material: AnyBsdf = metal.into();
+    let scene = Scene { material, floor: Some(Floor::new(GREY)?), sky: Sky::one_lamp() };
+    let film = Film { cell: CELL, limit: Limit { samples: 256, noise: 0.0 }, is_linear: true };
+    for i in 0..CELL * CELL {
+        let radiance = pixel(&scene, [i % CELL, i / CELL], film);
+        assert!(radiance.is_finite(), "pixel {i}: {radiance}");
     }
     Ok(())
 }
