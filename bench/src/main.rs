@@ -8,11 +8,13 @@
 mod cliffs;
 mod clock;
 mod conductors;
+mod cost;
 mod error;
 mod figures;
 mod files;
 mod furnace;
 mod inputs;
+mod page;
 mod paper;
 mod per_hit;
 mod plot;
@@ -30,7 +32,7 @@ mod values;
 
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -39,6 +41,7 @@ use serde_json::{Value, json};
 
 use crate::inputs::COUNT;
 use crate::paper::Paper;
+use crate::plot::Point;
 use crate::settings::{GAMMA, SIGMA, Settings};
 use crate::tables::Slices;
 
@@ -51,7 +54,8 @@ use crate::tables::Slices;
 #[command(version)]
 #[command(after_help = "Examples:\n  \
     microfacet-bench --quick --out out/bench\n  \
-    microfacet-bench paper --out out/paper\n\n\
+    microfacet-bench paper --out out/paper\n  \
+    microfacet-bench draw docs/benchmark.md --out docs\n\n\
     Exit status: 0 done, 2 bad input.")]
 struct Args {
     #[command(subcommand)]
@@ -61,7 +65,7 @@ struct Args {
 }
 
 /// A part of the benchmark.
-#[derive(Clone, Copy, PartialEq, Eq, Subcommand)]
+#[derive(Subcommand)]
 enum Part {
     /// Only what repeats figures 4 to 6 of Ribardière et al. 2017 (doi:10.1111/cgf.13137)
     ///
@@ -74,6 +78,17 @@ enum Part {
     /// figure-5-integrated.csv by gamma and sigma, figure-5.svg and .png; figure-6.csv, .svg and
     /// .png.
     Paper,
+    /// Draw the figures of a page that shows what was measured, without measuring
+    ///
+    /// Reads the tables that this command and the study `frame_time` print, and draws run time
+    /// against error, and run time beside GGX as bars.
+    ///
+    /// Files in --out: benchmark.svg, idea/cost.svg.
+    Draw {
+        /// The page, in Markdown.
+        #[arg(value_name = "PAGE")]
+        page: PathBuf,
+    },
 }
 
 #[derive(clap::Args)]
@@ -126,6 +141,10 @@ fn run(Args { part, options }: Args) -> Result<(), Failure> {
             .map_err(|why| Failure(format!("making the folder {}: {why}", folder.display())))?;
     }
     let (files, text, json) = match part {
+        Some(Part::Draw { page }) => {
+            let folder = options.out.ok_or(Failure("name a folder with --out".into()))?;
+            return draw(&page, &folder);
+        }
         Some(Part::Paper) => {
             let paper = Paper::measure(&Tables::embedded(), &settings, stage);
             let files = if options.out.is_some() { paper.files()? } else { Vec::new() };
@@ -141,6 +160,18 @@ fn run(Args { part, options }: Args) -> Result<(), Failure> {
     } else {
         print(&format!("processor: {}\n\n{text}", processor::name()))
     }
+}
+
+/// Draws what a page says.
+fn draw(page: &Path, folder: &Path) -> Result<(), Failure> {
+    let of_page = |why: &dyn Display| Failure(format!("{}: {why}", page.display()));
+    let text = std::fs::read_to_string(page).map_err(|why| of_page(&why))?;
+    let points = page::points(&text).map_err(|why| of_page(&why.0))?;
+    let cost = cost::svg(&text, &points).map_err(|why| of_page(&why.0))?;
+    std::fs::create_dir_all(folder.join("idea"))?;
+    let files =
+        [("benchmark.svg", plot::svg(&points).into_bytes()), ("idea/cost.svg", cost.into_bytes())];
+    files::write(folder, &files)
 }
 
 /// What one run is to write, by name, and to print.
@@ -171,7 +202,10 @@ fn everything(settings: &Settings, files: bool) -> Result<Results, Failure> {
             ("bench.csv", files::csv(&[], &rows)?),
             ("furnace.csv", files::csv(&[], &furnace)?),
             ("bench.json", format!("{json:#}\n").into_bytes()),
-            ("bench.svg", plot::svg(&rows).into_bytes()),
+            (
+                "bench.svg",
+                plot::svg(&rows.iter().map(Point::from).collect::<Vec<_>>()).into_bytes(),
+            ),
             ("sweep.csv", files::csv(&sweep::Cell::COLUMNS, &cells)?),
         ];
         own.into_iter().chain(paper.files()?).collect()

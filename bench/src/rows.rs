@@ -56,10 +56,6 @@ pub(crate) struct Row {
     pub(crate) furnace_variance: Option<f64>,
     /// Variance times nanoseconds: the cost of a given noise level.
     pub(crate) variance_ns: Option<f64>,
-    /// Whether it draws all visible normals or evaluates a function, so that its error can be
-    /// compared.
-    #[serde(skip)]
-    pub(crate) complete: bool,
 }
 
 impl Row {
@@ -76,7 +72,6 @@ impl Row {
             error_rms: error.map(|error| error.rms),
             furnace_variance: None,
             variance_ns: None,
-            complete: true,
         }
     }
 }
@@ -120,7 +115,6 @@ pub(crate) fn rows(slices: &Slices, settings: &Settings) -> Vec<Row> {
         let variance = error::furnace_variance(rival, &inputs, settings.views, settings.draws);
         let row = Row::new(Quantity::Normal, rival, next(), error);
         all.push(Row {
-            complete: rival.run.draws_visible_normals(),
             furnace_variance: Some(variance),
             variance_ns: Some(variance * row.ns),
             ..row

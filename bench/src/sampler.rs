@@ -55,12 +55,6 @@ pub(crate) struct Sampler<'a> {
     pub(crate) density: Density,
 }
 
-impl Sampler<'_> {
-    pub(crate) fn draws_visible_normals(&self) -> bool {
-        matches!(self.density, Density::Visible)
-    }
-}
-
 /// A sampler of visible normals.
 fn visible<'a>(name: &'static str, gamma: f64, check: Check, draw: Draw<'a>) -> Rival<Sampler<'a>> {
     Rival::form(name, gamma, Sampler { draw, check, density: Density::Visible })
@@ -100,6 +94,10 @@ pub(crate) const BATCH: &str = "table, default, batch";
 pub(crate) const INVERSION: &str = "inversion of the CDF, any gamma";
 pub(crate) const INVERSION_SUM: &str = "inversion of the CDF, integer gamma";
 
+/// Samplers of another density than that of all visible normals, whose errors are not comparable.
+pub(crate) const OTHERS: [&str; 2] =
+    ["all normals (NDF)", "table, default, bounded to reflections"];
+
 const FAMILY: &str = "table, family, sigma and gamma per call";
 
 /// The numbers of the closed form are the listing's in the other order, height first.
@@ -133,7 +131,7 @@ pub(crate) fn samplers(slices: &Slices, seed: u64) -> Vec<Rival<Sampler<'_>>> {
     let [exact, mixture, ndf] = [(); 3].map(|()| Drawer::new(SIGMA));
     let exact = streamed(seed, move |v, stream| exact.exact(v, stream));
     let mixture = streamed(seed, move |v, stream| mixture.mixture(v, stream));
-    let ndf = one("all normals (NDF)", GAMMA, Check::Distribution, move |_, u| ndf.ndf(u));
+    let ndf = one(OTHERS[0], GAMMA, Check::Distribution, move |_, u| ndf.ndf(u));
     let mut all = vec![
         one(CAPS, 2.0, of_caps, move |v, u| single::caps(sigma, v, u)),
         one("GGX, spherical caps as listed", 2.0, of_list, move |v, u| single::listed(sigma, v, u)),
@@ -166,8 +164,7 @@ pub(crate) fn samplers(slices: &Slices, seed: u64) -> Vec<Rival<Sampler<'_>>> {
     let batch: Draw = Box::new(move |v, u, m| lobe.sample_batch(v, u, m).expect("of one length"));
     all.push(visible(BATCH, GAMMA, Check::Cdf, batch).of(default));
     all.push(visible(FAMILY, GAMMA, Check::Cdf, of_family(slices)).of_family(slices));
-    let name = "table, default, bounded to reflections";
-    let bounded = one(name, GAMMA, Check::Distribution, move |v, u| bounded.at(v).sample(u));
+    let bounded = one(OTHERS[1], GAMMA, Check::Distribution, move |v, u| bounded.at(v).sample(u));
     all.push(with_density(bounded, density).of(default));
     for (name, set) in
         [("bilinear, default nodes", default), ("bilinear, high nodes", slices.get(HIGH))]

@@ -6,20 +6,27 @@ use crate::rows::{Quantity, Row};
 use crate::settings::SIGMA;
 use crate::sweep::Summary;
 
+/// The tables of rows, with the names of what they hold.
+pub(crate) const TABLES: [(Quantity, &str); 6] = [
+    (Quantity::Normal, "visible normals"),
+    (Quantity::G1, "G1"),
+    (Quantity::D, "D"),
+    (Quantity::Conductor, "conductor, sample_with_pdf and eval_pdf"),
+    (Quantity::Evaluation, "conductor, eval_pdf"),
+    (Quantity::PerHit, "parameters per hit"),
+];
+
+/// The width of names and of γ. A line has at most 100 columns; names of normals are shorter.
+pub(crate) fn widths(quantity: Quantity) -> [usize; 2] {
+    if quantity == Quantity::Normal { [40, 6] } else { [43, 7] }
+}
+
 pub(crate) fn table(rows: &[Row]) -> String {
     let mut text =
         format!("sigma {}; errors are of the CDFs, or of G1, absolute, or of D, relative\n", SIGMA);
-    for (quantity, title) in [
-        (Quantity::Normal, "visible normals"),
-        (Quantity::G1, "G1"),
-        (Quantity::D, "D"),
-        (Quantity::Conductor, "conductor, sample_with_pdf and eval_pdf"),
-        (Quantity::Evaluation, "conductor, eval_pdf"),
-        (Quantity::PerHit, "parameters per hit"),
-    ] {
-        // A line has at most 100 columns; names of normals are shorter.
+    for (quantity, title) in TABLES {
         let is_normal = quantity == Quantity::Normal;
-        let [wide, narrow] = if is_normal { [40, 6] } else { [43, 7] };
+        let [wide, narrow] = widths(quantity);
         text += &format!(
             "\n{title:wide$}{:>narrow$}{:>8}{:>8}{:>7}{:>7}{:>7}",
             "gamma", "ns", "bytes", "stored", "max", "rms"

@@ -34,9 +34,9 @@ impl Paper {
     /// Rows for one G1, for a picture and for a visible normal, over γ and over σ.
     fn times_figure(&self) -> Figure {
         let quantities = [
-            (Quantity::G1, "One G1", "ns a call", 1.0),
-            (Quantity::Picture, "A picture of rough gold", "ms", 1e-6),
-            (Quantity::Normal, "A visible normal", "ns a call", 1.0),
+            (Quantity::G1, "G₁", "time of a call (ns)", 1.0),
+            (Quantity::Picture, "Picture of gold", "time of a picture (ms)", 1e-6),
+            (Quantity::Normal, "Visible normal", "time of a call (ns)", 1.0),
         ];
         let panels = quantities.into_iter().flat_map(|(quantity, what, unit, scale)| {
             let of_quantity: Vec<&Timing> =
@@ -51,8 +51,12 @@ impl Paper {
                 Panel::new(format!("{what}, {of}"), x, y.clone(), curves)
             };
             [
-                over(Axis::log("γ", SHAPES[0], SHAPES[1]), format!("by γ, σ = {SIGMA}"), true),
-                over(Axis::linear("σ", 0.0, 1.0), format!("by σ, γ = {GAMMA}"), false),
+                over(
+                    Axis::log("shape γ", SHAPES[0], SHAPES[1]),
+                    format!("by γ, σ = {SIGMA}"),
+                    true,
+                ),
+                over(Axis::linear("roughness σ", 0.0, 1.0), format!("by σ, γ = {GAMMA}"), false),
             ]
         });
         Figure::new(panels)
@@ -69,11 +73,11 @@ impl Paper {
                 Curve::new(Key::Gamma(of[0].gamma), name, points).dashed(alternate(i))
             };
             let curves = shapes.enumerate().map(curve);
-            let x = Axis::linear("θ in degrees", 0.0, 90.0);
-            Panel::new(title, x, Axis::log("error of G1", 1e-9, 3e-2), curves)
+            let x = Axis::degrees("angle θ of the view", 0.0, 90.0);
+            Panel::new(title, x, Axis::log("error of G₁", 1e-9, 3e-2), curves)
         };
         let rows = [
-            by_angle("Rational approximation, eq. 22–23", |at| at.rational_error),
+            by_angle("Rational, eq. 22–23", |at| at.rational_error),
             by_angle("Table, default quality", |at| at.table_error),
             self.by_measure(),
             self.by_sigma(),
@@ -86,9 +90,9 @@ impl Paper {
         let curves = MEASURES.iter().enumerate().map(|(i, measure)| {
             let curve = self.error_curve(Key::Nth(i), measure.formula.into(), i, SIGMA);
             // The last two coincide, since G1 is close to 1 where the error is largest.
-            curve.dashed(if i + 1 == MEASURES.len() { Dash::Dashed } else { Dash::Solid })
+            curve.dashed(alternate(i))
         });
-        let title = format!("Rational approximation over the hemisphere, σ = {SIGMA}");
+        let title = format!("Over the hemisphere, σ = {SIGMA}");
         self.over_hemisphere(title, curves.collect())
     }
 
@@ -111,8 +115,8 @@ impl Paper {
     fn over_hemisphere(&self, title: String, curves: Vec<Curve>) -> Panel {
         let (key, points) = (Key::OTHER, SHAPES.map(|gamma| (gamma, 1e2 * CLAIM)));
         let claim = Curve::new(key, "0.7 %, as the paper has it", points).dashed(Dash::Dotted);
-        let x = Axis::log("γ", SHAPES[0], SHAPES[1]);
-        let y = Axis::linear("per cent", 0.0, 0.8);
+        let x = Axis::log("shape γ", SHAPES[0], SHAPES[1]);
+        let y = Axis::linear("error (%)", 0.0, 0.8);
         Panel::new(title, x, y, curves.into_iter().chain([claim]))
     }
 
@@ -151,9 +155,9 @@ impl Paper {
     }
 }
 
-/// Dashes that distinguish neighbours on a ramp of colours.
+/// Dashes that distinguish neighbours in a list.
 fn alternate(i: usize) -> Dash {
-    if i.is_multiple_of(2) { Dash::Solid } else { Dash::Dashed }
+    [Dash::Solid, Dash::Dashed, Dash::LongDashed, Dash::DashDotted, Dash::DashDotDotted][i % 5]
 }
 
 /// The curves over γ or over σ; a method of one shape is constant over γ.
@@ -170,8 +174,7 @@ fn time_curves(of: &[&Timing], by_gamma: bool, scale: f64) -> Vec<Curve> {
             false if by_gamma => points.map(|time| (time.gamma, y(time))).collect(),
             false => points.map(|time| (time.sigma, y(time))).collect(),
         };
-        let dash = if method.is_reference() { Dash::Dashed } else { Dash::Solid };
-        Curve { points, ..Curve::new(method.key(), method.name(), []).dashed(dash) }
+        Curve { points, ..Curve::new(method.key(), method.name(), []).dashed(method.dash()) }
     };
     of.chunk_by(|a, b| a.method == b.method).map(curve).collect()
 }

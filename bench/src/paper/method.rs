@@ -1,6 +1,6 @@
 //! The methods that are timed, with their names and colours.
 
-use microfacet_report::plot::Key;
+use microfacet_report::plot::{Dash, Key};
 use serde::Serialize;
 
 /// A way to compute G1, or to draw visible normals, in the order of tables and legends.
@@ -30,19 +30,20 @@ pub(super) enum Method {
 }
 
 impl Method {
-    /// The name, and the colour: that of the same method in the figures of the printed formulas.
-    const fn parts(self) -> (&'static str, Key) {
+    /// The name, the colour and the dash; the colour is that of the same method in the figures of
+    /// the printed formulas.
+    const fn parts(self) -> (&'static str, Key, Dash) {
         match self {
-            Self::Hypergeometric => ("eq. 13-15, hypergeometric", Key::Nth(1)),
-            Self::Integer => ("eq. 21, integer", Key::Nth(8)),
-            Self::HalfInteger => ("eq. 21, half-integer", Key::Nth(4)),
-            Self::Rational => ("eq. 22-23, rational", Key::Nth(2)),
-            Self::Beta => ("beta function, prepared", Key::OTHER),
-            Self::Table => ("table", Key::TABLE),
-            Self::Ggx => ("GGX, closed form", Key::Nth(5)),
-            Self::Beckmann => ("Beckmann, closed form", Key::Nth(6)),
-            Self::Inversion => ("inversion of the CDF, f64", Key::Nth(3)),
-            Self::Rejection => ("exact by rejection, f64", Key::Nth(7)),
+            Self::Hypergeometric => ("eq. 13-15, hypergeometric", Key::Nth(1), Dash::DashDotted),
+            Self::Integer => ("eq. 21, integer", Key::Nth(8), Dash::LongDashed),
+            Self::HalfInteger => ("eq. 21, half-integer", Key::Nth(4), Dash::LongDashed),
+            Self::Rational => ("eq. 22-23, rational", Key::Nth(2), Dash::DashDotDotted),
+            Self::Beta => ("beta function, prepared", Key::OTHER, Dash::LongDashed),
+            Self::Table => ("table", Key::TABLE, Dash::Solid),
+            Self::Ggx => ("GGX, closed form", Key::Nth(5), Dash::Dashed),
+            Self::Beckmann => ("Beckmann, closed form", Key::Nth(6), Dash::Dotted),
+            Self::Inversion => ("inversion of the CDF, f64", Key::Nth(3), Dash::DashDotted),
+            Self::Rejection => ("exact by rejection, f64", Key::Nth(7), Dash::LongDashed),
         }
     }
 
@@ -52,6 +53,10 @@ impl Method {
 
     pub(super) const fn key(self) -> Key {
         self.parts().1
+    }
+
+    pub(super) const fn dash(self) -> Dash {
+        self.parts().2
     }
 
     /// Whether the method is for one shape only, and is compared with others at all shapes.

@@ -8,20 +8,20 @@
 from __future__ import annotations
 
 import argparse
+import math
 
 import microfacet.mitsuba
 
 microfacet.mitsuba.set_variant("llvm_ad_rgb")
 
-import matplotlib
-
-matplotlib.use("Agg")
-
 import matplotlib.pyplot as plt
 import numpy as np
 from mitsuba_studio import picture, studio
+from plot_style import name, pixels
 
-SHAPES = {"γ = 1.6": 1.6, "GGX (γ = 2)": 2.0, "γ = 3": 3.0, "Beckmann (γ = ∞)": "inf"}
+SHAPES = [1.6, 2.0, 3.0, math.inf]
+#: Pixels: the edge of a picture, the gap between two, and the room for letters.
+SIZE, GAP, ABOVE, BELOW = 250, 10, 42, 42
 
 
 def main() -> None:
@@ -36,18 +36,22 @@ def main() -> None:
             "type": "student_t_conductor", "material": "Cu", "gamma": gamma,
             "sigma": options.sigma, "compensation": "kulla_conty",
         }
-        for gamma in SHAPES.values()
+        for gamma in map(str, SHAPES)
     ]  # fmt: skip
-    size = 250
-    pictures = [picture(studio(surface, size, size), options.spp) for surface in surfaces]
-    pixels = np.concatenate([np.asarray(one) for one in pictures], axis=1)
-    figure = plt.figure(figsize=(len(SHAPES) * size / 100, (size + 30) / 100), dpi=100)
-    axes = figure.add_axes((0, 0, 1, size / (size + 30)))
-    axes.imshow(pixels)
-    axes.set_axis_off()
-    for number, name in enumerate(SHAPES):
-        axes.text(size * (number + 0.5), -8, name, ha="center", va="bottom", fontsize=12)
-    figure.savefig(options.out)
+    pictures = [picture(studio(surface, SIZE, SIZE), options.spp) for surface in surfaces]
+    width, height = len(SHAPES) * (SIZE + GAP) - GAP, ABOVE + SIZE + BELOW
+    figure = plt.figure(figsize=(width / 100, height / 100), dpi=100)
+    letters = pixels(24)
+    for number, (gamma, one) in enumerate(zip(SHAPES, pictures)):
+        left = number * (SIZE + GAP)
+        axes = figure.add_axes((left / width, BELOW / height, SIZE / width, SIZE / height))
+        axes.imshow(np.asarray(one))
+        axes.set_axis_off()
+        middle = (left + SIZE / 2) / width
+        figure.text(middle, 1 - 30 / height, name(gamma), ha="center", fontsize=letters)
+    words = f"copper of roughness σ = {options.sigma:g}"
+    figure.text(0.5, 12 / height, words, ha="center", fontsize=letters)
+    figure.savefig(options.out, dpi=100)
     print(options.out)
 
 

@@ -17,13 +17,10 @@ import microfacet.mitsuba
 microfacet.mitsuba.set_variant("llvm_ad_rgb")
 
 import drjit as dr
-import matplotlib
-
-matplotlib.use("Agg")
-
 import matplotlib.pyplot as plt
 import mitsuba as mi
 import numpy as np
+from plot_style import pixels
 
 #: Steps of the optimiser, at the beginning.
 RATE = 0.12
@@ -96,21 +93,28 @@ def sphere(sigma: float, gamma: float) -> mi.Scene:
 
 
 def plot(path: np.ndarray, options: argparse.Namespace, pictures: list[Any]) -> None:
-    figure, axes = plt.subplots(1, 4, figsize=(10, 2.6), width_ratios=(2.2, 1, 1, 1), dpi=90)
-    for column, (name, wanted) in enumerate((("σ", options.sigma), ("γ", options.gamma))):
-        (line,) = axes[0].plot(path[:, column], label=name)
-        axes[0].axhline(wanted, color=line.get_color(), linestyle=":", linewidth=1)
-    axes[0].set_yscale("log")
-    axes[0].set_yticks([0.2, 0.5, 1, 2, 4], labels=["0.2", "0.5", "1", "2", "4"])
-    axes[0].minorticks_off()
-    axes[0].set_xlabel("step")
-    axes[0].legend(frameon=False)
+    figure, axes = plt.subplot_mosaic(
+        [["path"] * 3, ["before", "after", "wanted"]],
+        figsize=(5.12, 4.4), height_ratios=(1.25, 1), layout="constrained",
+    )  # fmt: skip
+    steps = axes["path"]
+    for column, (name, wanted, dash) in enumerate(
+        (("roughness σ", options.sigma, "solid"), ("shape γ", options.gamma, (0, (3.5, 2))))
+    ):
+        (line,) = steps.plot(path[:, column], ls=dash, label=name)
+        # What is to be found.
+        steps.axhline(wanted, color=line.get_color(), linestyle=":", linewidth=pixels(1.4))
+    steps.plot([], [], "k:", linewidth=pixels(1.4), label="wanted")
+    steps.set_yscale("log")
+    steps.set_yticks([0.2, 0.5, 1, 2, 4], labels=["0.2", "0.5", "1", "2", "4"])
+    steps.minorticks_off()
+    steps.set(xlabel="step of the optimiser", ylabel="σ and γ")
+    steps.legend(loc="center right")
     names = ("before", f"after {options.steps} steps", "wanted")
-    for axis, name, picture in zip(axes[1:], names, pictures):
-        axis.imshow(np.asarray(mi.util.convert_to_bitmap(picture)))
-        axis.set_title(name, fontsize=10)
-        axis.set_axis_off()
-    figure.tight_layout()
+    for key, name, picture in zip(("before", "after", "wanted"), names, pictures):
+        axes[key].imshow(np.asarray(mi.util.convert_to_bitmap(picture)))
+        axes[key].set_title(name)
+        axes[key].set_axis_off()
     figure.savefig(options.out)
 
 

@@ -6,23 +6,15 @@ python plots.py [OUT.png]
 import math
 import sys
 
-import matplotlib
-
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from plot_style import SHAPES, name, pixels
 
 import microfacet
 from microfacet import exact
 
-SHAPES = {1.6: "tab:red", 2.0: "tab:orange", 4.0: "tab:green", math.inf: "tab:blue"}
-NAMES = {2.0: "γ = 2, GGX", math.inf: "γ = ∞, Beckmann"}
 SIGMA = 0.4
-
-
-def name(gamma: float) -> str:
-    return NAMES.get(gamma, f"γ = {gamma}")
 
 
 def plane(theta: np.ndarray) -> np.ndarray:
@@ -33,24 +25,25 @@ def plane(theta: np.ndarray) -> np.ndarray:
 def masking(axes: Axes) -> None:
     """G1 over the angle of the view, by tables and by the model."""
     theta = np.linspace(0.0, math.pi / 2, 200)
-    for gamma, colour in SHAPES.items():
+    for gamma, (colour, dash) in SHAPES.items():
         lobe, model = microfacet.StudentT(SIGMA, gamma), exact.StudentT(SIGMA, gamma)
-        axes.plot(np.degrees(theta), lobe.g1(plane(theta)), colour, label=name(gamma))
-        axes.plot(np.degrees(theta[::12]), model.g1(plane(theta[::12])), ".", color=colour)
-    axes.set(title="G1, tables (lines) and model (dots)", xlabel="θ in degrees", ylabel="G1(v)")
-    axes.legend()
+        axes.plot(np.degrees(theta), lobe.g1(plane(theta)), color=colour, ls=dash, label=name(gamma))
+        some = theta[::12]
+        axes.plot(np.degrees(some), model.g1(plane(some)), ".", color=colour, ms=pixels(5))
+    axes.set(title=f"Masking, σ = {SIGMA}", xlabel="angle θ of the view (°)", ylabel="masking G₁(θ)")
+    axes.set(xticks=[0, 30, 60, 90], ylim=(0, 1.05))
 
 
 def lobe(axes: Axes) -> None:
     """f cos of a mirror-like conductor for a view at 40°, over the light in the plane."""
     theta = np.radians(np.linspace(-89.9, 89.9, 800))
     v = [-math.sin(math.radians(40)), 0.0, math.cos(math.radians(40))]
-    for gamma, colour in SHAPES.items():
+    for gamma, (colour, dash) in SHAPES.items():
         bsdf = microfacet.Conductor(microfacet.StudentT(0.1, gamma))
         value = bsdf.eval(v, plane(theta))[:, 0] * np.cos(theta)
-        axes.semilogy(np.degrees(theta), value, colour, label=name(gamma))
-    axes.set(title="f cos θ of σ = 0.1, view at −40°", xlabel="θ of the light in degrees")
-    axes.set_ylim(1e-4, 30)
+        axes.semilogy(np.degrees(theta), value, color=colour, ls=dash)
+    axes.set(title="A view at −40°, σ = 0.1", xlabel="angle θ of the light (°)")
+    axes.set(xticks=[-90, -45, 0, 45, 90], ylabel="f cos θ (1/sr)", ylim=(1e-4, 30))
 
 
 def samples(axes: Axes) -> None:
@@ -62,26 +55,31 @@ def samples(axes: Axes) -> None:
     phi = (np.arange(256) + 0.5) * (2 * math.pi / 256)
     sin, cos = np.sin(middle)[:, None], np.cos(middle)[:, None]
     m = np.stack([sin * np.cos(phi), sin * np.sin(phi), cos + 0 * phi], axis=-1)
-    for gamma, colour in SHAPES.items():
+    for gamma, (colour, dash) in SHAPES.items():
         lobe = microfacet.StudentT(SIGMA, gamma)
         theta = np.arccos(np.minimum(lobe.sample_visible_normal(v, u)[:, 2], 1.0))
         count, _ = np.histogram(theta, edges, density=True)
-        axes.stairs(count, np.degrees(edges), color=colour, alpha=0.4, fill=True)
+        # Every other bin, so that lines are seen between the dots.
+        some = slice(0, None, 2)
+        axes.plot(np.degrees(middle)[some], count[some], ".", color=colour, ms=pixels(5))
         # In double precision: sums of float32 along an axis lose digits.
         mean = lobe.visible_normal_pdf(v, m).mean(axis=1, dtype=float)
         density = 2 * math.pi * mean * np.sin(middle)
-        axes.plot(np.degrees(middle), density, colour)
-    axes.set(title="a million visible normals (areas) and\ntheir density (lines), view at 60°")
-    axes.set_ylim(0, 3)
-    axes.set_xlabel("θ of the normal in degrees")
+        axes.plot(np.degrees(middle), density, color=colour, ls=dash)
+    axes.set(title=f"Visible normals of a view at 60°, σ = {SIGMA}", ylabel="density (1/rad)")
+    axes.set(xlabel="angle θ of the normal (°)", xticks=[0, 15, 30, 45, 60, 75, 90], ylim=(0, 3))
 
 
 def main(out: str = "microfacet.png") -> None:
-    figure, axes = plt.subplots(1, 3, figsize=(15, 4.6), layout="constrained")
-    masking(axes[0])
-    lobe(axes[1])
-    samples(axes[2])
-    figure.savefig(out, dpi=110)
+    figure, axes = plt.subplot_mosaic(
+        [["masking", "lobe"], ["samples", "samples"]], figsize=(5.12, 5.2), layout="constrained"
+    )
+    masking(axes["masking"])
+    lobe(axes["lobe"])
+    samples(axes["samples"])
+    axes["masking"].plot([], [], ".", color="black", ms=pixels(5), label="model; drawn normals")
+    figure.legend(loc="outside lower center", ncols=3)
+    figure.savefig(out)
     print(out)
 
 

@@ -2,6 +2,7 @@
 //! of the system.
 
 mod axis;
+mod bars;
 mod clip;
 mod drawing;
 mod figures;
@@ -16,6 +17,7 @@ mod svg;
 mod text;
 
 pub use axis::Axis;
+pub use bars::{Bar, Bars};
 pub use drawing::Drawing;
 pub use figures::{FIGURES, Listed, figure};
 pub use heat::{HeatMap, bar};
@@ -36,14 +38,14 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// A curve with a solid line.
+    /// A curve with the dash that follows from its key.
     pub fn new(
         key: Key,
         name: impl Into<String>,
         points: impl IntoIterator<Item = (f64, f64)>,
     ) -> Self {
         let points = points.into_iter().collect();
-        Self { key, name: name.into(), dash: Dash::Solid, points }
+        Self { key, name: name.into(), dash: key.dash(), points }
     }
 
     /// The same curve with this dash.
@@ -53,17 +55,32 @@ impl Curve {
     }
 }
 
-/// A point with its name next to it.
+/// A point. Those of a panel that have names are numbered from left to right, and listed beneath.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mark {
     /// What the point shows; this sets its colour.
     pub key: Key,
-    /// Name.
+    /// Name; a point without one has no number.
     pub name: String,
+    /// What all points with its symbol and colour are, for the legend; it leaves out "".
+    pub group: String,
     /// (x, y), inside the panel.
     pub at: (f64, f64),
-    /// Whether it is a dot, else a ring.
-    pub filled: bool,
+    /// How it is drawn.
+    pub symbol: Symbol,
+}
+
+/// How a point is drawn; symbols are told apart without colours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Symbol {
+    /// A filled circle.
+    Dot,
+    /// A circle.
+    Ring,
+    /// A filled square.
+    Square,
+    /// A square that is not filled.
+    Frame,
 }
 
 /// One coordinate system. A curve that leaves its range is interrupted there, and a triangle of the
@@ -101,8 +118,11 @@ impl Panel {
     }
 }
 
-/// Panels in rows. The legend of a row's curves is beneath it, or beneath the last of the rows that
-/// share it.
+/// Panels in rows. Rows share a legend if it names what one of them shows; it is beneath them, or
+/// above where there are points with names.
+///
+/// Letters have one size whatever the size of a panel, so that the narrower a figure is, the larger
+/// they are where it is shown as wide as a page or a phone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
     /// Panels, row by row.
@@ -114,14 +134,28 @@ pub struct Figure {
 }
 
 impl Figure {
-    /// Panels two in a row.
+    /// Panels two in a row: on a phone, 375 pixels wide, their numbers are 8 pixels high.
     pub fn new(panels: impl IntoIterator<Item = Panel>) -> Self {
-        Self { panels: panels.into_iter().collect(), columns: 2, panel: [560.0, 400.0] }
+        Self { panels: panels.into_iter().collect(), columns: 2, panel: [256.0, 236.0] }
+    }
+
+    /// Panels one below the other: on a phone their numbers are 11 pixels high.
+    pub fn stacked(panels: impl IntoIterator<Item = Panel>) -> Self {
+        Self { panels: panels.into_iter().collect(), columns: 1, panel: [375.0, 280.0] }
     }
 
     /// The figure as a drawing.
     pub fn drawing(&self) -> Drawing {
         layout::drawing(self)
+    }
+}
+
+/// A shape γ in a legend; GGX and Beckmann by their names.
+pub fn shape_name(gamma: f64) -> String {
+    match gamma {
+        2.0 => "γ = 2, GGX".into(),
+        f64::INFINITY => "γ = ∞, Beckmann".into(),
+        _ => format!("γ = {gamma}"),
     }
 }
 
@@ -140,6 +174,7 @@ microfacet_core::debug_in_words!(PlotError);
 
 #[cfg(test)]
 mod tests {
+    use super::drawing::{Anchor, Shape};
     use super::*;
 
     fn curve(key: Key, points: &[(f64, f64)]) -> Curve {
@@ -182,6 +217,11 @@ mod tests {
         assert_eq!(count(&figure), 1);
         figure.panels[2] = of(3.0);
         assert_eq!(count(&figure), 2);
+        // What the second row shows is in the legend of the first.
+        figure.panels[1] = of(3.0);
+        assert_eq!(count(&figure), 2);
+        figure.panels.push(of(4.0));
+        assert_eq!(count(&figure), 4);
     }
 
     #[test]
@@ -196,53 +236,111 @@ mod tests {
         assert!(!svg(vec![panel(vec![stays])]).contains("<polygon"));
     }
 
+    /// What the texts of a drawing cover: left, right, top and bottom.
+    fn texts(drawing: &Drawing) -> Vec<(&str, [f64; 4])> {
+        drawing.shapes.iter().filter_map(covered).collect()
+    }
+
+    fn covered(shape: &Shape) -> Option<(&str, [f64; 4])> {
+        let Shape::Text { at: [x, y], text, size, anchor, turned, .. } = shape else {
+            return None;
+        };
+        let length = text::width(text, *size);
+        let start = match anchor {
+            Anchor::Start => 0.0,
+            Anchor::Middle => -0.5 * length,
+            Anchor::End => -length,
+        };
+        let (ascent, descent) = (0.73 * size, 0.2 * size);
+        let covered = match turned {
+            false => [x + start, x + start + length, y - ascent, y + descent],
+            true => [x - ascent, x + descent, y + start, y + start + length],
+        };
+        (!text.is_empty()).then_some((text.as_str(), covered))
+    }
+
+    /// That no text is cut off, and none lies on another.
+    fn assert_texts_are_clear(drawing: &Drawing) {
+        let [width, height] = drawing.size;
+        let texts = texts(drawing);
+        let apart = |a: f64, b: f64| a >= b - 0.01;
+        for (i, (text, [left, right, top, bottom])) in texts.iter().enumerate() {
+            let inside = *left >= 0.0 && *right <= width && *top >= 0.0 && *bottom <= height;
+            assert!(inside, "\"{text}\" is cut off: {left} to {right} of {width}");
+            for (other, [l, r, t, b]) in &texts[..i] {
+                let clear =
+                    apart(*l, *right) || apart(*left, *r) || apart(*t, *bottom) || apart(*top, *b);
+                assert!(clear, "\"{text}\" lies on \"{other}\"");
+            }
+        }
+    }
+
     #[test]
-    fn names_of_points_do_not_overlap() {
+    fn points_are_numbered_and_listed_and_their_numbers_are_clear_of_all_else() {
         let mark = |i: i32| Mark {
             key: Key::TABLE,
             name: format!("rival {i}"),
-            at: (0.98, 10.0 + 0.1 * f64::from(i)),
-            filled: true,
+            group: "rivals".into(),
+            at: (0.98, 10.0 - 0.1 * f64::from(i)),
+            symbol: Symbol::Dot,
         };
         let mut panel = panel(Vec::new());
-        panel.marks = (0..6).map(mark).collect();
-        // Names must not lie on a curve either.
+        panel.marks = (1..=6).map(mark).collect();
         panel.curves = vec![curve(Key::Gamma(2.0), &[(0.0, 10.0), (1.0, 10.0)])];
-        let drawn = svg(vec![panel]);
-        let names: Vec<[f64; 3]> = drawn
-            .lines()
-            .filter(|line| line.contains(">rival "))
-            .map(|line| {
-                let at = |i| line.split('"').nth(i).unwrap().parse::<f64>().unwrap();
-                let width = text::width("rival 0", 10.5);
-                let before = [("\"end\"", width), ("\"middle\"", 0.5 * width)];
-                let before = before.iter().find(|(anchor, _)| line.contains(anchor));
-                [at(1) - before.map_or(0.0, |(_, before)| *before), at(3), width]
+        let drawing = Figure::stacked([panel]).drawing();
+        assert_texts_are_clear(&drawing);
+        for i in 1..=6 {
+            let number = format!("{i}");
+            let numbers = texts(&drawing).into_iter().filter(|(text, _)| *text == number).count();
+            // At its point, and before its name; numbers of axes are others.
+            assert!(numbers >= 2, "{number}");
+            assert!(texts(&drawing).iter().any(|(text, _)| *text == format!("rival {i}")));
+        }
+    }
+
+    #[test]
+    fn bars_are_as_long_as_their_values_and_their_words_are_whole() {
+        let bar = |key, to: f64| Bar { key, name: "Student-t".into(), to, value: "4.1 ns".into() };
+        let pair = |name: &str| (name.into(), vec![bar(Key::OTHER, 1.0), bar(Key::TABLE, 2.5)]);
+        let x = Axis::linear("run time", 0.0, 4.0);
+        let bars = Bars { title: "Bars".into(), x, groups: vec![pair("one"), pair("other")] };
+        let drawing = bars.drawing();
+        assert_texts_are_clear(&drawing);
+        let long: Vec<f64> = drawing
+            .shapes
+            .iter()
+            .filter_map(|shape| match shape {
+                Shape::Area { corners, .. } => Some(corners[1][0] - corners[0][0]),
+                _ => None,
             })
             .collect();
-        assert_eq!(names.len(), 6);
-        let meet =
-            |a: &[f64; 3], b: &[f64; 3]| (a[0] - b[0]).abs() < a[2] && (a[1] - b[1]).abs() < 10.0;
-        for (i, a) in names.iter().enumerate() {
-            assert!(names[..i].iter().all(|b| !meet(a, b)), "{names:?}");
+        assert_eq!(long.len(), 4);
+        assert!((long[1] / long[0] - 2.5).abs() < 1e-12 && long[..2] == long[2..], "{long:?}");
+    }
+
+    #[test]
+    fn texts_of_figures_are_whole_and_legible_on_a_phone() {
+        for Listed { name, .. } in FIGURES {
+            let drawing = figure(name).unwrap().drawing();
+            assert_texts_are_clear(&drawing);
+            let on_phone = 375.0 / drawing.size[0];
+            for shape in &drawing.shapes {
+                let Shape::Text { text, size, .. } = shape else { continue };
+                assert!(size * on_phone >= 8.0, "{name}: \"{text}\" is {}", size * on_phone);
+            }
         }
-        let line = drawn.lines().find(|line| line.contains("stroke-width=\"2\"")).unwrap();
-        let height = line.rsplit([',', '"']).nth(1).unwrap().parse::<f64>().unwrap();
-        // Baselines are some pixels beneath the middles of names.
-        let clear = |name: &[f64; 3]| (name[1] - 3.8 - height).abs() > 6.0;
-        assert!(names.iter().all(clear), "{names:?} at {height}");
     }
 
     #[test]
     fn png_has_the_size_of_the_page_twice_and_the_colours_of_svg() {
-        let key = Key::Gamma(2.0);
+        let key = Key::TABLE;
         let figure = Figure::new(vec![panel(vec![curve(key, &[(0.0, 10.0), (1.0, 10.0)])])]);
         let page = figure.drawing().size.map(|x| 2 * x as usize);
         let (pixels, width) = png::decode(&figure.drawing().png().unwrap());
         assert_eq!([width, pixels.len() / width], page);
         let count = pixels.iter().filter(|&&pixel| pixel == key.color()).count();
-        // The curve is four pixels wide, as long as the panel.
-        assert!((3000..5000).contains(&count), "{count}");
+        // The curve and its sample in the legend are four pixels wide.
+        assert!((1500..1800).contains(&count), "{count}");
         assert!(Figure::new([]).drawing().png().is_err());
     }
 

@@ -33,6 +33,11 @@ struct Arguments {
     rounds: u16,
 }
 
+/// The name of the picture that others are compared with, in what is printed.
+pub const GGX: &str = "GGX, σ textured";
+/// The name of the picture of the family by all visible normals.
+pub const TEXTURED: &str = "σ and γ textured, visible normals";
+
 /// Samples of a picture without noise, for each of one with it.
 const REFERENCE: u32 = 32;
 
@@ -137,8 +142,8 @@ pub fn run(arguments: &[String]) -> Outcome {
         gamma: Texture::new([1.6, 6.0], [11.0, 29.0]),
     };
     let mut pictures = [
-        picture("GGX, σ textured", OfGgx(&textures), cell)?,
-        picture("σ and γ textured, visible normals", Visible(&textures), cell)?,
+        picture(GGX, OfGgx(&textures), cell)?,
+        picture(TEXTURED, Visible(&textures), cell)?,
         picture("σ and γ textured, bounded", Bounded(&textures), cell)?,
     ];
     for _ in 0..rounds {

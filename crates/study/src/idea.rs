@@ -2,7 +2,7 @@
 //! a material that is no GGX, and what a certificate promises.
 //!
 //! ```sh
-//! cargo run --release -p microfacet-study -- idea docs
+//! cargo run --release -p microfacet-study -- idea docs/idea
 //! ```
 //!
 //! draws them as SVG into the folder, and prints the numbers that the page states. The spheres of
@@ -18,7 +18,7 @@ use microfacet_baker::store;
 use microfacet_fit::convert::Target;
 use microfacet_model::fresnel::schlick_weight;
 use microfacet_model::{AlbedoIntegrator, MicrofacetDistribution as _, Shape, StudentT};
-use microfacet_report::plot::{Axis, Curve, Dash, Figure, Key, Panel};
+use microfacet_report::plot::{Axis, Curve, Dash, Figure, Key, Panel, shape_name};
 use microfacet_sampler::{Masking, MicrofacetDistribution as _, Tables};
 use microfacet_tables::{Kind, Quantity};
 use rand::rngs::StdRng;
@@ -47,14 +47,6 @@ pub fn run(arguments: &[String]) -> Outcome {
     Ok(())
 }
 
-fn name(gamma: f64) -> String {
-    match gamma {
-        2.0 => "γ = 2, GGX".into(),
-        f64::INFINITY => "γ = ∞, Beckmann".into(),
-        _ => format!("γ = {gamma}"),
-    }
-}
-
 /// A curve of each shape over an axis.
 fn of_shapes(
     sigma: f64,
@@ -65,7 +57,7 @@ fn of_shapes(
         let lobe = StudentT::new([sigma; 2], gamma)?;
         let places = (0..=400).map(|i| low + (high - low) * f64::from(i) / 400.0);
         let points = places.map(|x| (x, f(&lobe, x)));
-        Ok(Curve::new(Key::Gamma(gamma), name(gamma), points))
+        Ok(Curve::new(Key::Gamma(gamma), shape_name(gamma), points))
     };
     GAMMAS.into_iter().map(each).collect()
 }
@@ -83,22 +75,22 @@ fn distribution() -> Result<Figure, Box<dyn std::error::Error>> {
         let lobe = StudentT::new([SIGMA; 2], gamma)?;
         println!(
             "sigma {SIGMA}, {}: D at 20 degrees {:.1e} of the peak",
-            name(gamma),
+            shape_name(gamma),
             relative(&lobe, 20.0)
         );
     }
-    let x = |high| Axis::linear("angle of the microfacet normal, degrees", 0.0, high);
+    let x = |high| Axis::degrees("angle θ of the facet", 0.0, high);
     Ok(Figure::new([
         Panel::new(
-            "The core",
+            format!("The core, σ = {SIGMA}"),
             x(20.0),
-            Axis::linear("D / D(0)", 0.0, 1.0),
+            Axis::linear("D(θ)/D(0)", 0.0, 1.0),
             of_shapes(SIGMA, [0.0, 20.0], relative)?,
         ),
         Panel::new(
-            "The tail",
+            format!("The tail, σ = {SIGMA}"),
             x(60.0),
-            Axis::log("D / D(0)", 1e-6, 1.0),
+            Axis::log("D(θ)/D(0)", 1e-6, 1.0),
             of_shapes(SIGMA, [0.0, 60.0], relative)?,
         ),
     ]))
@@ -117,20 +109,20 @@ fn masking() -> Result<Figure, Box<dyn std::error::Error>> {
     for gamma in GAMMAS {
         let lobe = tables.student_t(SIGMA, gamma)?;
         let points = drawn(|u| lobe.sample_visible_normal(at(VIEW).as_vec3(), u));
-        let name = if gamma == GAMMAS[0] { "a million, drawn by tables" } else { "" };
-        seen.push(Curve::new(Key::Gamma(gamma), name, points).dashed(Dash::Dotted));
+        let name = if gamma == GAMMAS[0] { "drawn by the tables" } else { "" };
+        seen.push(Curve::new(Key::Gamma(gamma), name, points).dashed(Dash::Points));
     }
     Ok(Figure::new([
         Panel::new(
             format!("Masking, σ = {SIGMA}"),
-            Axis::linear("angle of the view, degrees", 0.0, 90.0),
-            Axis::linear("G1, the share of facets that is seen", 0.0, 1.0),
+            Axis::degrees("angle θ of the view", 0.0, 90.0),
+            Axis::linear("masking G₁(θ)", 0.0, 1.0),
             g1,
         ),
         Panel::new(
             format!("Facets seen from {VIEW}°, σ = {SIGMA}"),
-            Axis::linear("tilt of the facet towards the view, degrees", LOW, 90.0),
-            Axis::linear("share for each degree", 0.0, 0.03),
+            Axis::degrees("tilt towards the view", LOW, 90.0),
+            Axis::linear("density (1/°)", 0.0, 0.03),
             seen,
         ),
     ]))
@@ -178,13 +170,25 @@ fn drawn(sample: impl Fn([f32; 2]) -> [f32; 3]) -> Vec<(f64, f64)> {
     counts.iter().enumerate().map(|(i, &y)| ((i as f64 + 0.5) * BIN + LOW, y)).collect()
 }
 
+/// σ and γ of the frosted glass of d'Eon 2023.
+const GLASS: [f64; 2] = [0.454, 3.0];
+
 /// The frosted glass of d'Eon 2023 beside the nearest GGX and the nearest Beckmann.
 fn glass() -> Result<Figure, Box<dyn std::error::Error>> {
-    let glass = Named { kind: DistributionKind::StudentT, values: vec![0.454, 3.0] };
+    let glass = Named { kind: DistributionKind::StudentT, values: GLASS.into() };
     let built = glass.build()?;
     let target = Target::new(&*built);
-    let mut curves = vec![tail::curve("frosted glass, σ = 0.454, γ = 3", &glass, Dash::Solid)?];
-    for kind in [DistributionKind::TrowbridgeReitz, DistributionKind::Beckmann] {
+    let [sigma, gamma] = GLASS;
+    let name = format!("frosted glass: Student-t, σ = {sigma}, γ = {gamma}");
+    // By shape, as in the other pictures of the page.
+    let curve = |name: String, gamma, of: &Named| {
+        Ok::<_, String>(Curve::new(Key::Gamma(gamma), name, tail::slopes(of)?))
+    };
+    let mut curves = vec![curve(name, gamma, &glass)?.dashed(Dash::Solid)];
+    for (kind, name, gamma) in [
+        (DistributionKind::TrowbridgeReitz, "GGX", 2.0),
+        (DistributionKind::Beckmann, "Beckmann", f64::INFINITY),
+    ] {
         let found = target.by_variation(kind, &Stage::unwatched())?;
         println!(
             "frosted glass, nearest {}: sigma {:.3}, total variation {:.3}",
@@ -192,14 +196,12 @@ fn glass() -> Result<Figure, Box<dyn std::error::Error>> {
             found.to.values[0],
             found.variation
         );
-        let dash = if kind == DistributionKind::Beckmann { Dash::Dotted } else { Dash::Dashed };
-        let name = if kind == DistributionKind::Beckmann { "Beckmann" } else { "GGX" };
-        curves.push(tail::curve(name, &found.to, dash)?);
+        curves.push(curve(format!("{name}, the nearest"), gamma, &found.to)?);
     }
     let x = Axis::log("slope tan θ", 1e-2, 10.0);
-    let y = Axis::linear("share of slopes, over ln(slope)", 0.0, 0.8);
-    let panel = Panel::new("A frosted glass is neither GGX nor Beckmann", x, y, curves);
-    Ok(Figure { panels: vec![panel], columns: 1, panel: [760.0, 420.0] })
+    let y = Axis::linear("density over ln(slope)", 0.0, 0.8);
+    let panel = Panel::new("Slopes of a frosted glass", x, y, curves);
+    Ok(Figure::stacked([panel]))
 }
 
 /// Errors of the default set's albedos between its nodes, and its certificate.
@@ -231,16 +233,28 @@ fn certified() -> Result<Figure, Box<dyn std::error::Error>> {
             })
             .collect();
         let points = points.map_err(|why| why.to_string())?;
-        curves.push(Curve::new(Key::Gamma(gamma), name(gamma), points));
+        curves.push(Curve::new(Key::Gamma(gamma), shape_name(gamma), points));
     }
     let bound = SIGMAS.map(|sigma| (sigma, promised));
-    curves.push(Curve::new(Key::OTHER, "certificate", bound).dashed(Dash::Dashed));
+    curves.push(Curve::new(Key::OTHER, "certificate", bound).dashed(Dash::LongDashed));
     println!("certificate of E in the default set: {promised:.2e}");
     let panel = Panel::new(
-        "Largest error of E over 25 views, between nodes",
+        "Error of E between nodes, 25 views",
         Axis::log("roughness σ", SIGMAS[0], SIGMAS[1]),
-        Axis::log("error of E", 1e-7, 1e-3),
+        Axis::log("largest error of E", 1e-7, 1e-3),
         curves,
     );
-    Ok(Figure { panels: vec![panel], columns: 1, panel: [760.0, 420.0] })
+    Ok(Figure::stacked([panel]))
+}
+
+/// The Python package draws shapes in the same colours.
+#[test]
+fn matplotlib_has_the_colours_of_these_pictures() {
+    let style = include_str!("../../../clients/python/examples/plot_style.py");
+    let drawn = distribution().unwrap().drawing().svg();
+    let colours: Vec<&str> = style.split('"').filter(|word| word.starts_with('#')).collect();
+    assert!(colours.len() > GAMMAS.len());
+    for colour in colours {
+        assert!(drawn.contains(&format!("stroke=\"{colour}\"")), "{colour} of plot_style.py");
+    }
 }

@@ -155,14 +155,16 @@ fn short(named: &Named) -> String {
 /// Densities of slopes, over their logarithm, of distributions that are replaced and of what
 /// replaces them.
 fn lobes() -> Result<Figure, String> {
-    let pairs = [
-        ("γ = 1.6", student_t(1.6), DistributionKind::Haze),
-        ("γ = 3", student_t(3.0), DistributionKind::Haze),
-        ("γ = ∞", student_t(f64::INFINITY), DistributionKind::Haze),
-        ("r 0.3, spread 0.1, w 0.3", openpbr([0.3, 0.1, 0.3]), DistributionKind::StudentT),
-        ("r 0.1, spread 0.25, w 0.3", openpbr([0.1, 0.25, 0.3]), DistributionKind::StudentT),
-        ("r 0.1, spread 0.5, w 0.5", openpbr([0.1, 0.5, 0.5]), DistributionKind::StudentT),
-    ];
+    let student_ts = [("γ = 1.6", 1.6), ("γ = 3", 3.0), ("γ = ∞", f64::INFINITY)];
+    let hazes = [[0.3, 0.1, 0.3], [0.1, 0.25, 0.3], [0.1, 0.5, 0.5]];
+    let pairs = student_ts.into_iter().zip(hazes).flat_map(|((name, gamma), haze)| {
+        let [r, spread, weight] = haze;
+        [
+            (name.into(), student_t(gamma), DistributionKind::Haze),
+            (format!("haze {r}, {spread}, {weight}"), openpbr(haze), DistributionKind::StudentT),
+        ]
+    });
+    let pairs: Vec<(String, Named, DistributionKind)> = pairs.collect();
     let panels: Result<Vec<Panel>, String> = pairs
         .into_par_iter()
         .map(|(title, from, to)| {
@@ -170,37 +172,39 @@ fn lobes() -> Result<Figure, String> {
             let one = nearest(&from, DistributionKind::TrowbridgeReitz)?;
             let title = format!("{title}: {:.3} apart", found.variation);
             let curves = [
-                curve("GGX", &one.to, Dash::Dotted)?,
-                curve("", &found.to, Dash::Dashed)?,
-                curve("", &from, Dash::Solid)?,
+                curve("GGX, the nearest", &one.to)?,
+                curve(format!("{}, the nearest", name(to)), &found.to)?.dashed(Dash::DashDotted),
+                curve(name(from.kind), &from)?,
             ];
             let x = Axis::log("slope tan θ", LOW, HIGH);
-            let y = Axis::linear("density over ln(slope)", 0.0, 0.9);
+            let y = Axis::linear("density over ln(slope)", 0.0, 0.8);
             Ok(Panel::new(title, x, y, curves))
         })
         .collect();
-    Ok(Figure { panels: panels?, columns: 3, panel: [400.0, 320.0] })
+    Ok(Figure::new(panels?))
+}
+
+/// What is replaced, or replaces it.
+fn name(kind: DistributionKind) -> &'static str {
+    if kind == DistributionKind::Haze { "core + haze" } else { "Student-t" }
 }
 
 const LOW: f64 = 1e-3;
 const HIGH: f64 = 10.0;
 
-/// The share of the projected area at the slopes of a distribution, over their logarithm. All
-/// curves of a kind have one name, for the legend; what they replace is solid.
-pub(crate) fn curve(name: &str, of: &Named, dash: Dash) -> Result<Curve, String> {
+fn curve(name: impl Into<String>, of: &Named) -> Result<Curve, String> {
+    Ok(Curve::new(Key::Kind(of.kind), name, slopes(of)?))
+}
+
+/// The share of the projected area at the slopes of a distribution, over their logarithm.
+pub(crate) fn slopes(of: &Named) -> Result<Vec<(f64, f64)>, String> {
     let built = of.build().map_err(|why| why.to_string())?;
-    let name = match (name, of.kind) {
-        ("", DistributionKind::Haze) => "core + haze",
-        ("", _) => "Student-t",
-        (name, _) => name,
-    };
-    let name = format!("{name}{}", if dash == Dash::Solid { "" } else { ", the nearest" });
     let slopes = (0..=400).map(|i| LOW * (HIGH / LOW).powf(f64::from(i) / 400.0));
     let density = |slope: f64| {
         let sin_cos = slope / (1.0 + slope * slope);
         (slope, std::f64::consts::TAU * built.d(slope.atan()) * sin_cos * sin_cos)
     };
-    Ok(Curve::new(Key::Kind(of.kind), name, slopes.map(density)).dashed(dash))
+    Ok(slopes.map(density).collect())
 }
 
 /// How far the nearest core + haze, and the nearest GGX, is from a Student-t, over 1/(γ−1).
@@ -222,8 +226,7 @@ fn over_gamma() -> Result<Figure, String> {
             Key::Kind(DistributionKind::TrowbridgeReitz),
             "the nearest GGX",
             points(|(.., one)| one.variation),
-        )
-        .dashed(Dash::Dashed),
+        ),
     ];
     let numbers = [
         (0.0, "∞"),
@@ -234,12 +237,13 @@ fn over_gamma() -> Result<Figure, String> {
         (1.0 / 0.8, "1.8"),
         (1.0 / 0.55, "1.55"),
     ];
-    let x = Axis::marked("γ, evenly in 1/(γ−1)", numbers.map(|(s, name)| (s / 2.0, name.into())));
+    let x =
+        Axis::marked("shape γ, evenly in 1/(γ−1)", numbers.map(|(s, name)| (s / 2.0, name.into())));
     let y = Axis::linear("total variation of slopes", 0.0, 0.25);
     let curves = curves.map(|curve| Curve {
         points: curve.points.iter().map(|&(s, y)| (s / 2.0, y)).collect(),
         ..curve
     });
-    let panel = Panel::new("How far a Student-t is from two GGX", x, y, curves);
-    Ok(Figure { panels: vec![panel], columns: 1, panel: [760.0, 420.0] })
+    let panel = Panel::new("Distance of a Student-t from GGX", x, y, curves);
+    Ok(Figure::stacked([panel]))
 }

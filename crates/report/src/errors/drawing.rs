@@ -5,7 +5,7 @@ use microfacet_tables::Table;
 use super::super::drawing::SIZE;
 use super::{ticks, words};
 use crate::error_map::{ErrorMap, Span};
-use crate::plot::{Axis, Curve, Drawing, Figure, HeatMap, Key, Mark, Panel};
+use crate::plot::{Axis, Curve, Drawing, Figure, HeatMap, Key, Mark, Panel, Symbol};
 
 /// The low end of the scale: about the rounding of single precision.
 const LOW: f64 = 1e-7;
@@ -49,7 +49,8 @@ fn curve(map: &ErrorMap, x: Axis, y: Axis) -> Drawing {
     let curve = Curve::new(key, "", points);
     let ring = |[x, _]: [f64; 2]| {
         let near = curve.points[(x * last).round() as usize].1;
-        Mark { key, name: String::new(), at: (x, near), filled: false }
+        let at = (x, near);
+        Mark { key, name: String::new(), group: String::new(), at, symbol: Symbol::Ring }
     };
     let marks = map.worst.map(ring).into_iter().filter(|mark| !mark.at.1.is_nan()).collect();
     let panel = Panel { marks, ..Panel::new("", x, y, [curve]) };

@@ -12,7 +12,12 @@ pub struct Axis {
     marks: Vec<Tick>,
     /// Whether there are ticks between the numbers of a logarithmic scale.
     is_fine: bool,
+    /// Whether numbers are degrees.
+    is_angle: bool,
 }
+
+/// Steps of degrees, which divide a right angle.
+const ANGLES: [f64; 7] = [1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0];
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tick {
@@ -29,7 +34,17 @@ impl Axis {
     /// Unless `low < high`, both finite.
     pub fn linear(label: impl Into<String>, low: f64, high: f64) -> Self {
         assert!(low < high && low.is_finite() && high.is_finite(), "a range of {low} to {high}");
-        Self { label: label.into(), low, high, log: false, marks: Vec::new(), is_fine: true }
+        let (log, is_fine, is_angle, marks) = (false, true, false, Vec::new());
+        Self { label: label.into(), low, high, log, marks, is_fine, is_angle }
+    }
+
+    /// An axis with an even scale of degrees; ` (°)` is added to the quantity.
+    ///
+    /// # Panics
+    /// Unless `low < high`, both finite.
+    pub fn degrees(quantity: impl AsRef<str>, low: f64, high: f64) -> Self {
+        let label = format!("{} (°)", quantity.as_ref());
+        Self { is_angle: true, ..Self::linear(label, low, high) }
     }
 
     /// An axis with a logarithmic scale.
@@ -90,10 +105,14 @@ impl Axis {
         if !self.marks.is_empty() {
             return self.marks_apart(1.0 / room);
         }
-        if self.log {
-            let mut ticks = self.log_ticks(room);
+        // Two decades may hold one power only, which is no scale: then 1, 2 and 5 stand closer. Of
+        // these, too, less than a decade may hold only one.
+        for numbers_a_decade in [3.0, 2.0] {
+            if !self.log {
+                break;
+            }
+            let mut ticks = self.log_ticks(room, numbers_a_decade);
             ticks.retain(|tick| self.is_fine || tick.label.is_some());
-            // Less than a decade may hold only one of the numbers 1, 2 and 5, which is no scale.
             if ticks.iter().filter(|tick| tick.label.is_some()).count() > 1 {
                 return ticks;
             }
@@ -112,14 +131,21 @@ impl Axis {
         kept
     }
 
-    /// Multiples of 1, 2 or 5 times a power of ten.
+    /// Multiples of 1, 2 or 5 times a power of ten, or of a part of a right angle.
     fn even_ticks(&self, room: f64) -> Vec<Tick> {
         let rough = (self.high - self.low) / room;
+        let is_enough = |step: &f64| self.is_angle && *step >= rough * 0.999;
+        if let Some(step) = ANGLES.into_iter().find(is_enough) {
+            return self.multiples(step, 0);
+        }
         let power = libm::floor(libm::log10(rough));
         let unit = libm::exp10(power);
         let factor = [1.0, 2.0, 5.0].into_iter().find(|f| f * unit >= rough * 0.999);
         let (step, power) = factor.map_or((10.0 * unit, power + 1.0), |f| (f * unit, power));
-        let decimals = (-power).max(0.0) as usize;
+        self.multiples(step, (-power).max(0.0) as usize)
+    }
+
+    fn multiples(&self, step: f64, decimals: usize) -> Vec<Tick> {
         let (first, last) = ((self.low / step - 1e-9).ceil(), (self.high / step + 1e-9).floor());
         (0..=(last - first) as u32)
             .map(|i| {
@@ -131,15 +157,16 @@ impl Axis {
             .collect()
     }
 
-    /// 1, 2 and 5 times powers of ten where there is room; else the powers, or every n-th.
-    fn log_ticks(&self, room: f64) -> Vec<Tick> {
+    /// 1, 2 and 5 times powers of ten where there is room for this many numbers in each decade;
+    /// else the powers, or every n-th.
+    fn log_ticks(&self, room: f64, numbers_a_decade: f64) -> Vec<Tick> {
         let [low, high] = self.ends();
         let decades = high - low;
-        let numbered: &[u32] = if 3.0 * decades <= room { &[1, 2, 5] } else { &[1] };
+        let numbered: &[u32] = if numbers_a_decade * decades <= room { &[1, 2, 5] } else { &[1] };
         let every = ((decades / room).ceil() as i32).max(1);
         let marked = if every == 1 { 1..=9 } else { 1..=1 };
         let powers = (low - 1e-9).floor() as i32..=(high + 1e-9).floor() as i32;
-        let plain = self.low >= 1e-3 && self.high <= 1e5;
+        let plain = self.low >= 1e-3 && self.high < 1e5;
         let tick = |mantissa: u32, power: i32| {
             // Parsed, so that 2e-3 is the number nearest to 0.002.
             let value = format!("{mantissa}e{power}").parse().expect("digits");
@@ -183,6 +210,7 @@ mod tests {
         let numbers = ["0.1", "0.2", "0.5", "1", "2", "5", "10"];
         assert_eq!(labels(&Axis::log("x", 0.1, 10.0), 8), numbers);
         assert_eq!(labels(&Axis::log("x", 0.1, 10.0), 4), ["0.1", "1", "10"]);
+        assert_eq!(labels(&Axis::log("x", 1.5, 40.0), 4), ["2", "5", "10", "20"]);
         assert_eq!(labels(&Axis::log("x", 3e-7, 4e-6), 4), ["5·10⁻⁷", "10⁻⁶", "2·10⁻⁶"]);
         let powers = ["10⁻¹⁶", "10⁻¹²", "10⁻⁸", "10⁻⁴", "10⁰"];
         assert_eq!(labels(&Axis::log("x", 1e-16, 1.0), 5), powers);
@@ -202,6 +230,9 @@ mod tests {
     fn an_even_axis_has_multiples_of_1_2_5() {
         assert_eq!(labels(&Axis::linear("x", -1.0, 1.0), 5), ["−1.0", "−0.5", "0.0", "0.5", "1.0"]);
         assert_eq!(labels(&Axis::linear("x", 0.0, 90.0), 6), ["0", "20", "40", "60", "80"]);
+        let angles = Axis::degrees("x", -30.0, 90.0);
+        assert_eq!(labels(&angles, 5), ["−30", "0", "30", "60", "90"]);
+        assert_eq!(angles.label, "x (°)");
         assert_eq!(labels(&Axis::linear("x", 0.0, 3e4), 4), ["0", "10000", "20000", "30000"]);
     }
 

@@ -47,12 +47,14 @@ pub(super) enum Shape {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
     pub(super) size: At,
+    /// By how much a file of SVG is shown larger, where there is room.
+    pub(super) zoom: f64,
     pub(super) shapes: Vec<Shape>,
 }
 
 impl Drawing {
     pub(super) fn new(size: At) -> Self {
-        Self { size, shapes: Vec::new() }
+        Self { size, zoom: 1.0, shapes: Vec::new() }
     }
 
     pub(super) fn line(&mut self, points: Vec<At>, color: Color, width: f64, dash: Dash) {
@@ -79,11 +81,15 @@ impl Drawing {
 }
 
 /// A circle as a closed line, with sides of 1 to 2 pixels at the radii of points and rings.
-pub(super) fn circle([x, y]: At, radius: f64) -> Vec<At> {
-    const SIDES: u32 = 24;
+pub(super) fn circle(center: At, radius: f64) -> Vec<At> {
+    polygon(center, radius, 24)
+}
+
+/// A regular polygon as a closed line, with a corner to the right.
+pub(super) fn polygon([x, y]: At, radius: f64, sides: u32) -> Vec<At> {
     let corner = |i: u32| {
-        let (sin, cos) = libm::sincos(f64::from(i) * std::f64::consts::TAU / f64::from(SIDES));
+        let (sin, cos) = libm::sincos(f64::from(i) * std::f64::consts::TAU / f64::from(sides));
         [x + radius * cos, y + radius * sin]
     };
-    (0..=SIDES).map(corner).collect()
+    (0..=sides).map(corner).collect()
 }

@@ -1,13 +1,15 @@
-//! Colours: each follows from what a curve is, so that it means one thing in every figure.
+//! Colours and dashes: each follows from what a curve is, so that it means one thing in every
+//! figure, in print without colours as well.
 
 use microfacet_baker::distribution::DistributionKind;
 
 pub(super) type Color = [u8; 3];
 
 pub(super) const BLACK: Color = [0, 0, 0];
+pub(super) const WHITE: Color = [255, 255, 255];
 pub(super) const GRID: Color = [220, 220, 220];
 
-/// What a curve or a point is; its colour follows.
+/// What a curve or a point is; its colour follows, and the dash of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Key {
     /// A distribution of this kind.
@@ -27,18 +29,40 @@ pub enum Dash {
     #[default]
     Solid,
     /// Long dashes, drawn over solid curves.
+    LongDashed,
+    /// Dashes, drawn over longer ones.
     Dashed,
-    /// Dots, drawn over all others.
+    /// Dashes and dots in turn.
+    DashDotted,
+    /// Dashes with two dots after each.
+    DashDotDotted,
+    /// Dots, drawn over all lines with dashes.
     Dotted,
+    /// No line, but a small dot at each point: what was drawn at random, or measured.
+    Points,
 }
 
 impl Dash {
+    /// In the order in which curves are drawn, the last over all others.
+    pub(super) const ORDER: [Self; 7] = [
+        Self::Solid,
+        Self::LongDashed,
+        Self::Dashed,
+        Self::DashDotted,
+        Self::DashDotDotted,
+        Self::Dotted,
+        Self::Points,
+    ];
+
     /// Lengths of dashes and gaps in turn, in widths of the line; none if there are no gaps.
     pub(super) fn lengths(self) -> &'static [f64] {
         match self {
-            Self::Solid => &[],
-            Self::Dashed => &[4.0, 2.5],
-            Self::Dotted => &[1.2, 1.8],
+            Self::Solid | Self::Points => &[],
+            Self::LongDashed => &[7.0, 2.0],
+            Self::Dashed => &[3.5, 2.0],
+            Self::DashDotted => &[5.0, 1.6, 1.2, 1.6],
+            Self::DashDotDotted => &[5.0, 1.4, 1.2, 1.4, 1.2, 1.4],
+            Self::Dotted => &[1.2, 1.5],
         }
     }
 }
@@ -91,14 +115,14 @@ impl Key {
                 DistributionKind::Beckmann => BLACK,
                 DistributionKind::Gauss => BLUE,
                 DistributionKind::TrowbridgeReitz => VERMILLION,
-                DistributionKind::Gtr => OLIVE,
+                DistributionKind::Gtr => INDIGO,
                 DistributionKind::BlinnPhong => GREEN,
                 DistributionKind::Schlick => SKY,
                 DistributionKind::Sawicki => PURPLE,
-                DistributionKind::StudentT => ORANGE,
-                DistributionKind::HyperCauchy => WINE,
+                DistributionKind::StudentT => WINE,
+                DistributionKind::HyperCauchy => ORANGE,
                 DistributionKind::AshikhminShirley => GREY,
-                DistributionKind::Haze => INDIGO,
+                DistributionKind::Haze => OLIVE,
                 DistributionKind::Abc => BROWN,
             },
             // In ln(γ − 3/2) shapes near the pole are as far apart as those near Beckmann's limit.
@@ -108,6 +132,21 @@ impl Key {
             }
             Self::Sigma(sigma) => between(&SIGMAS, sigma / 1.2),
             Self::Nth(i) => NTH[i % NTH.len()],
+        }
+    }
+
+    /// The dash of a curve that no figure chooses otherwise: GGX is dashed and Beckmann dotted,
+    /// whether they are a shape γ or a distribution by name, and shapes between have their own.
+    pub(super) fn dash(self) -> Dash {
+        match self {
+            Self::Kind(DistributionKind::TrowbridgeReitz) => Dash::Dashed,
+            Self::Kind(DistributionKind::Beckmann) => Dash::Dotted,
+            Self::Gamma(gamma) if gamma < 2.0 => Dash::Solid,
+            Self::Gamma(2.0) => Dash::Dashed,
+            Self::Gamma(gamma) if gamma <= 4.0 => Dash::DashDotted,
+            Self::Gamma(gamma) if gamma.is_finite() => Dash::LongDashed,
+            Self::Gamma(_) => Dash::Dotted,
+            _ => Dash::Solid,
         }
     }
 }
@@ -192,6 +231,17 @@ mod tests {
                 (0..=40).map(|i| 1.0 / contrast(between(&ramp, f64::from(i) / 40.0))).collect();
             assert!(light.windows(2).all(|pair| pair[0] < pair[1]), "{light:?}");
         }
+    }
+
+    #[test]
+    fn shapes_are_told_apart_by_dashes_and_a_distribution_has_that_of_its_shape() {
+        let shapes = [1.6, 2.0, 4.0, 5.0, f64::INFINITY].map(|gamma| Key::Gamma(gamma).dash());
+        for (i, dash) in shapes.iter().enumerate() {
+            assert!(!shapes[..i].contains(dash), "{dash:?}");
+        }
+        let kinds = [DistributionKind::TrowbridgeReitz, DistributionKind::Beckmann];
+        assert_eq!(kinds.map(|kind| Key::Kind(kind).dash()), [shapes[1], shapes[4]]);
+        assert!(Dash::ORDER.iter().all(|dash| dash.lengths().len().is_multiple_of(2)));
     }
 
     #[test]

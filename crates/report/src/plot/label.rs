@@ -1,12 +1,11 @@
-//! Names next to points, where they cover little.
+//! Numbers next to points, where they cover little.
 
 use super::drawing::{Anchor, At, Drawing};
 use super::ink::{Color, Dash};
-use super::panel::{DOT, Frame};
+use super::panel::{DOT, Frame, NUMBERS as LETTERS};
 use super::text;
 
-/// Size of the letters and of the space that a line of them takes.
-const LETTERS: f64 = 10.5;
+/// The height that a line of letters takes.
 const LINE: f64 = 12.0;
 /// Gap between a point and its name, and between a name and others beside it.
 const GAP: f64 = 3.0;
@@ -104,12 +103,11 @@ pub(super) fn write(
     drawing: &mut Drawing,
     frame: &Frame,
     curves: &[Vec<At>],
-    points: &[(At, &str, Color)],
+    points: &[(At, String, Color)],
 ) {
     let lines: Vec<Segment> =
         curves.iter().flat_map(|curve| curve.windows(2)).map(|ends| [ends[0], ends[1]]).collect();
-    let dots: Vec<Area> = points.iter().map(|&(at, ..)| Area::about(at, [DOT; 2])).collect();
-    let named: Vec<_> = points.iter().filter(|(_, name, _)| !name.is_empty()).collect();
+    let dots: Vec<Area> = points.iter().map(|(at, ..)| Area::about(*at, [DOT; 2])).collect();
     // What a place costs whatever the other names do.
     let cost = |at: At, place: &Place| {
         let count = |is: &dyn Fn(&&Area) -> bool| dots.iter().filter(is).count();
@@ -126,19 +124,19 @@ pub(super) fn write(
         away + HIDES * hidden as f64 + STRIKES * struck as f64 + MEETS * met as f64
     };
     let mut options: Vec<Vec<(f64, Place)>> = Vec::new();
-    for &&(at, name, _) in &named {
-        let all = places(at, text::width(name, LETTERS));
-        options.push(all.map(|place| (cost(at, &place), place)).collect());
+    for (at, name, _) in points {
+        let all = places(*at, text::width(name, LETTERS));
+        options.push(all.map(|place| (cost(*at, &place), place)).collect());
     }
     // Each name in turn is the first to be placed; the arrangement of the least cost is drawn.
-    let arrangements = (0..named.len()).map(|first| arranged(&options, first));
+    let arrangements = (0..points.len()).map(|first| arranged(&options, first));
     let Some(best) = arrangements.min_by(|a, b| a.0.total_cmp(&b.0)) else { return };
-    for ((&&(_, name, color), options), best) in named.iter().zip(&options).zip(best.1) {
+    for (((_, name, color), options), best) in points.iter().zip(&options).zip(best.1) {
         let (_, Place { anchor, start, lead, .. }) = options[best];
         if let Some(lead) = lead {
-            drawing.line(lead.into(), color, 0.6, Dash::Solid);
+            drawing.line(lead.into(), *color, 0.6, Dash::Solid);
         }
-        drawing.text([start[0], start[1] + 0.36 * LETTERS], name, LETTERS, anchor, color);
+        drawing.text([start[0], start[1] + 0.36 * LETTERS], name, LETTERS, anchor, *color);
     }
 }
 

@@ -4,7 +4,7 @@ use super::Axis;
 use super::drawing::{Anchor, Drawing};
 use super::heat::draw_bar;
 use super::ink::{BLACK, Color, false_color};
-use super::panel::{LETTERS, NUMBERS, TITLE};
+use super::panel::{LETTERS, NUMBERS};
 use super::text;
 
 /// What a picture shows, line by line from its upper left corner.
@@ -41,10 +41,11 @@ pub struct Sheet {
     pub edge: f64,
 }
 
-/// Sizes in pixels of the page: the room on either side of a row's name, that of the titles and of
-/// a caption, and the gaps between pictures and between groups of columns.
+/// Sizes in pixels of the page: the room on either side of a row's name, that of titles and their
+/// letters, the room of a caption, and the gaps between pictures and between groups of columns.
 const BESIDE: f64 = 10.0;
 const HEAD: f64 = 58.0;
+const TITLE: f64 = 15.0;
 const CAPTION: f64 = 22.0;
 const GAP: f64 = 8.0;
 const APART: f64 = 16.0;

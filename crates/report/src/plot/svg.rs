@@ -15,8 +15,9 @@ impl Drawing {
     /// As SVG 1.1 on white, without references to anything outside it.
     pub fn svg(&self) -> String {
         let [width, height] = self.size;
+        let [wide, high] = self.size.map(|x| number(x * self.zoom));
         let head = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{wide}\" height=\"{high}\" \
              viewBox=\"0 0 {width} {height}\" font-family=\"{}\" {LINES}>\n\
              <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
             text::FAMILIES

@@ -10,9 +10,9 @@ use microfacet_model::{MicrofacetDistribution, StudentT};
 
 use crate::plot::{Axis, Curve, Dash, Figure, Key, Panel};
 
-/// The shapes that are compared with γ = ∞; neighbours of like colours differ in their dashes.
+/// The shapes that are compared with γ = ∞; those of like colours differ in their dashes.
 const GAMMAS: [f64; 4] = [30.0, 40.0, 50.0, 100.0];
-const DASHES: [Dash; 4] = [Dash::Dotted, Dash::Solid, Dash::Dashed, Dash::Solid];
+const DASHES: [Dash; 4] = [Dash::Dotted, Dash::Solid, Dash::Dashed, Dash::DashDotted];
 /// The range of σ, and the steps in it.
 const SIGMAS: [f64; 2] = [0.05, 1.2];
 const STEPS: usize = 46;
@@ -35,33 +35,40 @@ impl At {
     }
 }
 
-/// A measure of distance: its name, the printed bound in %, and its value from all angles.
-type Measure = (&'static str, f64, fn(&[At]) -> f64);
+/// A measure of distance: its name, the unit of a hundredth of it, the printed bound in that unit,
+/// and its value from all angles.
+type Measure = (&'static str, &'static str, f64, fn(&[At]) -> f64);
+
+const PER_CENT: &str = "%";
 
 const BOUND_OF_D: f64 = 0.5;
 const BOUND_OF_G1: f64 = 0.3;
 
 const MEASURES: [Measure; 12] = [
-    ("mean of |ΔD| over the hemisphere, 0.01/sr", BOUND_OF_D, |all| {
+    ("mean of |ΔD| over the hemisphere", "0.01/sr", BOUND_OF_D, |all| {
         integral(all, |at| at.d) / (2.0 * PI)
     }),
-    ("largest |ΔD|/D(0)", BOUND_OF_D, |all| largest(all, At::unit)),
-    ("largest |ΔP22|/P22(0)", BOUND_OF_D, |all| {
+    ("largest |ΔD|/D(0)", PER_CENT, BOUND_OF_D, |all| largest(all, At::unit)),
+    ("largest |ΔP₂₂|/P₂₂(0)", PER_CENT, BOUND_OF_D, |all| {
         largest(all, |at| at.unit() * at.theta.cos().powi(4))
     }),
-    ("∫ |ΔD| cos θ dω", BOUND_OF_D, |all| integral(all, |at| at.d * at.theta.cos())),
-    ("mean over θ of |ΔD|/D(0)", BOUND_OF_D, |all| mean(all, At::unit)),
-    ("RMSE over θ of D/D(0)", BOUND_OF_D, |all| mean(all, |at| at.unit().powi(2)).sqrt()),
-    ("mean of |ΔG1| over the hemisphere", BOUND_OF_G1, |all| {
+    ("∫ |ΔD| cos θ dω", PER_CENT, BOUND_OF_D, |all| integral(all, |at| at.d * at.theta.cos())),
+    ("mean over θ of |ΔD|/D(0)", PER_CENT, BOUND_OF_D, |all| mean(all, At::unit)),
+    ("RMSE over θ of D/D(0)", PER_CENT, BOUND_OF_D, |all| {
+        mean(all, |at| at.unit().powi(2)).sqrt()
+    }),
+    ("mean of |ΔG₁| over the hemisphere", PER_CENT, BOUND_OF_G1, |all| {
         integral(all, |at| at.g1_error) / (2.0 * PI)
     }),
-    ("largest |ΔG1|", BOUND_OF_G1, |all| largest(all, |at| at.g1_error)),
-    ("largest |ΔG1|/G1", BOUND_OF_G1, |all| largest(all, |at| at.g1_error / at.g1)),
-    ("∫ |ΔG1| cos θ dω / π", BOUND_OF_G1, |all| {
+    ("largest |ΔG₁|", PER_CENT, BOUND_OF_G1, |all| largest(all, |at| at.g1_error)),
+    ("largest |ΔG₁|/G₁", PER_CENT, BOUND_OF_G1, |all| largest(all, |at| at.g1_error / at.g1)),
+    ("∫ |ΔG₁| cos θ dω / π", PER_CENT, BOUND_OF_G1, |all| {
         integral(all, |at| at.g1_error * at.theta.cos()) / PI
     }),
-    ("mean over θ of |ΔG1|", BOUND_OF_G1, |all| mean(all, |at| at.g1_error)),
-    ("RMSE over θ of G1", BOUND_OF_G1, |all| mean(all, |at| at.g1_error.powi(2)).sqrt()),
+    ("mean over θ of |ΔG₁|", PER_CENT, BOUND_OF_G1, |all| mean(all, |at| at.g1_error)),
+    ("RMSE over θ of G₁", PER_CENT, BOUND_OF_G1, |all| {
+        mean(all, |at| at.g1_error.powi(2)).sqrt()
+    }),
 ];
 
 fn largest(all: &[At], f: impl Fn(&At) -> f64) -> f64 {
@@ -77,13 +84,13 @@ fn integral(all: &[At], f: impl Fn(&At) -> f64) -> f64 {
     FRAC_PI_2 * mean(all, |at| 2.0 * PI * at.theta.sin() * f(at))
 }
 
-/// One panel for each measure: two rows for D, then two for masking.
+/// One panel for each measure: three rows for D, then three for masking.
 pub(super) fn figure() -> Figure {
     let [low, high] = SIGMAS;
     let sigmas = (0..=STEPS).map(|i| low + (high - low) * i as f64 / STEPS as f64);
     let of_gamma =
         GAMMAS.map(|gamma| sigmas.clone().map(|sigma| distances(sigma, gamma)).collect::<Vec<_>>());
-    let panel = |(title, bound, measure): Measure| {
+    let panel = |(title, unit, bound, measure): Measure| {
         let curve = |((gamma, dash), all): ((f64, Dash), &Vec<Vec<At>>)| {
             let points = sigmas.clone().zip(all.iter().map(|all| 100.0 * measure(all)));
             Curve::new(Key::Gamma(gamma), format!("γ = {gamma}"), points).dashed(dash)
@@ -91,12 +98,13 @@ pub(super) fn figure() -> Figure {
         let mut curves: Vec<Curve> =
             GAMMAS.into_iter().zip(DASHES).zip(&of_gamma).map(curve).collect();
         let printed = [(0.0, bound), (high, bound)];
-        curves.push(Curve::new(Key::OTHER, "printed for γ = 40", printed));
+        let bound = Curve::new(Key::Nth(8), "bound printed for γ = 40", printed);
+        curves.push(bound.dashed(Dash::LongDashed));
         let highest = curves.iter().flat_map(|curve| &curve.points).map(|p| p.1);
-        let y = Axis::linear("distance, per cent", 0.0, 1.05 * highest.fold(0.0, f64::max));
-        Panel::new(title, Axis::linear("σ", 0.0, high), y, curves)
+        let y = Axis::linear(format!("distance ({unit})"), 0.0, 1.05 * highest.fold(0.0, f64::max));
+        Panel::new(title, Axis::linear("roughness σ", 0.0, high), y, curves)
     };
-    Figure { panels: MEASURES.map(panel).into(), columns: 3, panel: [430.0, 310.0] }
+    Figure::new(MEASURES.map(panel))
 }
 
 fn distances(sigma: f64, gamma: f64) -> Vec<At> {

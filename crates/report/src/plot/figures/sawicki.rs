@@ -10,14 +10,15 @@ use microfacet_model::classic::Isotropic;
 use crate::plot::figures::curve;
 use crate::plot::{Axis, Curve, Dash, Figure, Key, Panel};
 
-/// The distributions, with the letters of their parameters; curves that coincide differ in dashes.
+/// The distributions, with their names and the letters of their parameters; curves that coincide
+/// differ in dashes.
 const DRAWN: [(DistributionKind, &str, Dash); 6] = [
-    (DistributionKind::Beckmann, "m", Dash::Solid),
-    (DistributionKind::BlinnPhong, "N", Dash::Dashed),
-    (DistributionKind::Gauss, "m", Dash::Dotted),
-    (DistributionKind::TrowbridgeReitz, "C", Dash::Solid),
-    (DistributionKind::Schlick, "m", Dash::Dashed),
-    (DistributionKind::Sawicki, "N", Dash::Solid),
+    (DistributionKind::Beckmann, "Beckmann, m", Dash::Dotted),
+    (DistributionKind::BlinnPhong, "Blinn–Phong, N", Dash::LongDashed),
+    (DistributionKind::Gauss, "Gauss, m", Dash::DashDotted),
+    (DistributionKind::TrowbridgeReitz, "GGX, C", Dash::Dashed),
+    (DistributionKind::Schlick, "Schlick, m", Dash::DashDotDotted),
+    (DistributionKind::Sawicki, "Sawicki, N", Dash::Solid),
 ];
 /// The parameters of [`DRAWN`] in figures 1 and 2 of Sawicki 2021; that of Schlick is Beckmann's.
 const SETS: [Set; 2] = [
@@ -46,9 +47,9 @@ impl Set {
     }
 
     fn all(&self) -> Vec<Drawn> {
-        let of = |((kind, letter, dash), value): ((DistributionKind, &str, Dash), f64)| {
+        let of = |((kind, name, dash), value): ((DistributionKind, &str, Dash), f64)| {
             let d = Named { kind, values: vec![value] }.build().expect("printed parameters");
-            Drawn { kind, name: format!("{}, {letter} = {value}", kind.name()), dash, d }
+            Drawn { kind, name: format!("{name} = {value}"), dash, d }
         };
         DRAWN.into_iter().zip(self.0).map(of).collect()
     }
@@ -63,7 +64,7 @@ impl Set {
         f: fn(f64, f64) -> f64,
     ) -> Panel {
         let reach = (5.0 * self.beckmann()).min(FRAC_PI_2).to_degrees();
-        let (x, all) = (Axis::linear("β in degrees", 0.0, reach), self.all());
+        let (x, all) = (Axis::degrees("angle β from the normal", 0.0, reach), self.all());
         let curve = |of: &Drawn| {
             of.curve(&x, |at| {
                 let [own, beckmann] = [&of.d, &all[0].d].map(|d| d.relative_d(at.to_radians()));
@@ -76,17 +77,17 @@ impl Set {
 
     fn unit_forms(&self) -> Panel {
         let y = Axis::linear("D(β)/D(0)", 0.0, 1.05);
-        self.over_angles("D/D(0) near Beckmann", y, false, |d, _| d)
+        self.over_angles("D/D(0)", y, false, |d, _| d)
     }
 
     fn differences(&self) -> Panel {
-        let y = Axis::linear("difference in % of the maximum", -17.0, 17.0);
-        self.over_angles("Difference to Beckmann", y, true, |d, beckmann| 100.0 * (d - beckmann))
+        let y = Axis::linear("from Beckmann (% of D(0))", -17.0, 17.0);
+        self.over_angles("Difference", y, true, |d, beckmann| 100.0 * (d - beckmann))
     }
 
     fn tails(&self) -> Panel {
-        let y = Axis::log("ratio of D/D(0)", 0.1, 1e5);
-        self.over_angles("D/D(0) over Beckmann's", y, true, |d, beckmann| d / beckmann)
+        let y = Axis::log("D/D(0) over Beckmann's", 0.1, 1e5);
+        self.over_angles("Tails beside Beckmann's", y, true, |d, beckmann| d / beckmann)
     }
 
     /// Brightness along the line through the highlight of a sphere, relative to that where the half
@@ -102,7 +103,7 @@ impl Set {
         let reach = 5.0 * self.beckmann();
         let low = (half - reach).max(light - FRAC_PI_2).max(-FRAC_PI_2);
         let high = (half + reach).min(FRAC_PI_2);
-        let x = Axis::linear("distance from the centre, in radii", low.sin(), high.sin());
+        let x = Axis::linear("distance from the centre (radii)", low.sin(), high.sin());
         let curve = |of: &Drawn| {
             let brightness = |normal: f64| {
                 let (cos_v, cos_l) = (normal.cos().max(0.0), (normal - light).cos().max(0.0));
@@ -112,7 +113,7 @@ impl Set {
             of.curve(&x, |at| brightness(at.clamp(-1.0, 1.0).asin()) / peak)
         };
         let curves: Vec<Curve> = self.all().iter().map(curve).collect();
-        let title = format!("Light at {degrees}° to the view, Beckmann m = {}", self.beckmann());
+        let title = format!("Light at {degrees}°, m = {}", self.beckmann());
         Panel::new(title, x, Axis::linear("relative brightness", 0.0, 1.05), curves)
     }
 }
@@ -124,8 +125,7 @@ pub(super) fn distributions() -> Figure {
 
 /// Ratios of D/D(0) to Beckmann's, which show the tails.
 pub(super) fn tails() -> Figure {
-    let panels = SETS.iter().map(Set::tails).collect();
-    Figure { panels, columns: 1, panel: [760.0, 360.0] }
+    Figure::stacked(SETS.iter().map(Set::tails))
 }
 
 /// Highlights of a rough sphere and of a smooth one, after figures 3–5 of Sawicki 2021.
