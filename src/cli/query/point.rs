@@ -151,7 +151,7 @@ pub(super) struct Average {
     #[command(flatten)]
     shape: Shape,
     /// Form of masking.
-    #[arg(long, value_name = "FORM", value_parser = masking(), default_value = "height-correlated",
+    #[arg(long, value_parser = masking(), default_value = "height-correlated",
           conflicts_with = "input")]
     masking: Masking,
 }
