@@ -133,7 +133,7 @@ fn a_figure_is_written_in_the_format_of_its_name() {
     assert!(png.starts_with(b"\x89PNG") && svg.starts_with("<svg"));
     let image = png::Decoder::new(Cursor::new(&png)).read_info().unwrap();
     let (width, height) = image.info().size();
-    has(&svg, &[&format!("width=\"{}\" height=\"{}\"", width / 2, height / 2)]);
+    has(&svg, &[&format!("viewBox=\"0 0 {} {}\"", width / 2, height / 2)]);
     assert_eq!(fs::read_dir(desk.path()).unwrap().count(), 3);
 }
 

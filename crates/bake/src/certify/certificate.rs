@@ -182,8 +182,9 @@ impl Found {
     }
 }
 
-/// Climbs from the worst of `seen`, `climbs` times and from points at least a cell apart, along
-/// axes of `cells` cells (0 for a missing axis).
+/// Climbs from the worst of `seen`, `climbs` times and from points in different cells, along axes
+/// of `cells` cells (0 for a missing axis). Each cell has hills of its own: points a whole cell
+/// apart would leave out the neighbour's, by which the error of γ = 1.6 was missed by 9 %.
 pub(super) fn climbed(
     mut seen: Vec<Seen>,
     climbs: usize,
@@ -195,7 +196,7 @@ pub(super) fn climbed(
     seen.sort_by_key(|seen| Reverse(seen.rank()));
     let mut starts: Vec<Seen> = Vec::new();
     for one in &seen {
-        let apart = |a: &Seen| (0..3).any(|k| (a.at[k] - one.at[k]).abs() >= 1.0);
+        let apart = |a: &Seen| (0..3).any(|k| a.at[k].floor() != one.at[k].floor());
         if starts.len() < climbs && starts.iter().all(apart) {
             starts.push(*one);
         }
