@@ -18,16 +18,17 @@ use super::{Context, Result, bail, print, watched};
 
 /// Fit a Student-t to a measured distribution of normals, or to measured materials.
 ///
-/// --input reads a CSV with the columns angle and D, and fits sigma and gamma; beside them, for
-/// comparison, Beckmann, GGX, two GGX (haze) and the ABC of Loew et al. 2012. --merl reads files of
-/// the MERL database (Matusik et al. 2003; isotropic reflectances, .binary), and fits to each a
-/// Lambert term and a Cook-Torrance lobe of each of these: an albedo and an F0 (Schlick) for red,
-/// green and blue, a sigma and a gamma for all, with uncorrelated masking. The error is the sum of
-/// |measured - fitted| cos theta_l over that of measured cos theta_l, with view and light less than
-/// 80 degrees from the normal.
+/// --input reads a CSV of two columns, an angle from the macro normal and D there in any unit, with
+/// or without a header, and fits sigma and gamma; beside them, for comparison, Beckmann, GGX, two
+/// GGX (haze) and the ABC of Loew et al. 2012. --merl reads files of the MERL database (Matusik et
+/// al. 2003; isotropic reflectances, .binary), and fits to each a Lambert term and a Cook-Torrance
+/// lobe of each of these: an albedo and an F0 (Schlick) for red, green and blue, a sigma and a
+/// gamma for all, with uncorrelated masking. The error is the sum of |measured - fitted| cos
+/// theta_l over that of measured cos theta_l, with view and light less than 80 degrees from the
+/// normal.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
-  printf 'theta,D\\n0,10\\n5,8.7\\n10,5.6\\n15,2.9\\n20,1.3\\n25,0.5\\n' | microfacet-bake fit --input - --degrees
+  printf 'theta,D\\n0,10\\n5,8.7\\n10,5.6\\n20,1.3\\n' | microfacet-bake fit --input - --degrees
   microfacet-bake fit --merl gold-metallic-paint.binary chrome.binary --recipe fitted.toml")]
 pub(super) struct Args {
     /// CSV file, `-` for standard input.
@@ -80,11 +81,11 @@ fn normals(input: &Path, args: &Args) -> Result<String> {
         let last = angle(last, angles);
         writeln!(text, "nothing above {last}: D is taken as zero there")?;
     }
-    writeln!(text, "{:<44}{:>14}{:>16}", "fit", "RMSE of D/D(0)", "RMSE of D, 1/sr")?;
+    writeln!(text, "{:<44}{:>14}{:>17}", "fit", "RMSE of D/D(0)", "RMSE of D, 1/sr")?;
     for found in found.all() {
         let ([relative, density], to) = (found.rmse, found.to.to_string());
         let ends = ends(&found.ends_at);
-        writeln!(text, "{to:<44}{relative:>14.4e}{density:>16.4e}{ends}")?;
+        writeln!(text, "{to:<44}{relative:>14.4e}{density:>17.4e}{ends}")?;
     }
     Ok(text)
 }

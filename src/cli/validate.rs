@@ -39,7 +39,7 @@ pub(super) struct Args {
     /// Seed of everything random.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = values::seed)]
     seed: u64,
-    /// Multiply the model's gamma by this; 1.01 shows that the tests reject.
+    /// Multiply the model's gamma by this; with --samples 1e6, 1.01 shows that the tests reject.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = values::factor)]
     perturb_gamma: f64,
     /// Print the result as JSON, with the identity of the set; `report --validation` reads it.

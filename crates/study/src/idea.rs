@@ -6,7 +6,7 @@
 //! ```
 //!
 //! draws them as SVG into the folder, and prints the numbers that the page states. The spheres of
-//! the page are `spheres docs/tails --figure tails`.
+//! the page are `spheres docs/idea/tails --figure tails`.
 
 use std::f64::consts::PI;
 use std::path::Path;

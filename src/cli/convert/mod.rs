@@ -36,9 +36,9 @@ pub(super) const FORMS: [Named<Form>; 2] = [
 ///
 /// RMSE is over a uniform grid of angles. TV is the total variation of the densities of slopes,
 /// half of the integral of |difference|: the share of the projected area, from 0 to 1, whose
-/// normals differ. The last distance is the largest difference of D G2/(4 cos cos) over the largest
-/// value of the distribution that is replaced, for a light at 45 degrees from the normal, views in
-/// the plane of incidence at most 80 degrees from it, and height-correlated masking.
+/// normals differ. The column `reflection` is the largest difference of D G2/(4 cos cos) over the
+/// largest value of the distribution that is replaced, for a light at 45 degrees from the normal,
+/// views in the plane of incidence at most 80 degrees from it, and height-correlated masking.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  microfacet-bake convert --from blinn-phong:50 --to beckmann\n  \
@@ -138,7 +138,7 @@ impl Args {
             "RMSE of D/D(0)",
             "RMSE of D, 1/sr",
             "TV of slopes",
-            "of reflection",
+            "reflection",
             "source"
         );
         let (mut lines, mut refusals) = (0, Vec::new());

@@ -26,6 +26,9 @@ using spectrum = std::array<float, STUDENT_T_CHANNELS>;
 
 /* A sampled light, as student_t_sample; false where it is absorbed. */
 template <class V> struct sampled {
+    static_assert(!std::is_array<V>::value,
+                  "a vector is a type that V{x, y, z} makes, such as std::array<float, 3>; "
+                  "with arrays call the functions of student_t_materials.h");
     student_t_event event;
     bool is_delta;
     V l, m;

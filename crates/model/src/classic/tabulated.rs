@@ -12,7 +12,7 @@ const GAP: f64 = 0.1;
 #[derive(Clone, Copy, PartialEq, thiserror::Error)]
 pub enum TabulatedError {
     /// Fewer than three rows; how many.
-    #[error("{0} rows: a distribution needs at least 3")]
+    #[error("a distribution needs at least 3 rows, not {0}")]
     TooFew(usize),
     /// An angle outside [0, π/2], or not above that of the row before; the row and the angle in
     /// radians.
