@@ -127,7 +127,7 @@ fn query_answers_points_of_options_as_rows_of_a_file() {
     let albedo = desk.ok("query albedo --sigma 0.5 --gamma 2");
     assert_eq!(albedo.lines().next(), Some("sigma = 0.5, gamma = 2, masking = height-correlated"));
     assert_eq!(albedo.lines().count(), 3 + 6 * 2, "{albedo}");
-    let average = desk.ok("query albedo-average --sigma 0.5 --sigma 1 --gamma 2 --method exact");
+    let average = desk.ok("query albedo-average --sigma 0.5,1 --gamma 2 --method exact");
     has(&average, &["gamma = 2, masking", "0.5    exact", "1      exact"]);
 
     desk.refuses("query g1 --sigma 1.1 --perceptual --gamma 2", &["1.1", "[0, 1]"]);

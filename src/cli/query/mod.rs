@@ -50,7 +50,7 @@ enum What {
     Albedo(Directional),
     /// Cosine-weighted average of the albedo. Columns: sigma, gamma, masking.
     #[command(after_help = "Example:
-  microfacet-bake query albedo-average --sigma 0.5 --gamma 2 --gamma inf")]
+  microfacet-bake query albedo-average --sigma 0.5 --gamma 2,inf")]
     AlbedoAverage(Average),
 }
 

@@ -28,9 +28,9 @@ pub(super) trait Points {
 /// A shape, and how roughness is written.
 #[derive(Args)]
 struct Shape {
-    /// Shape; several are answered in turn.
-    #[arg(long, value_name = "G", value_parser = gamma, conflicts_with = "input",
-          required_unless_present = "input")]
+    /// Shapes, comma separated.
+    #[arg(long, value_name = "G,...", value_delimiter = ',', value_parser = gamma,
+          conflicts_with = "input", required_unless_present = "input")]
     gamma: Vec<f64>,
     /// Square --sigma, which is then a perceptual roughness in [0, 1], as in glTF.
     #[arg(long, conflicts_with = "input")]
@@ -56,14 +56,14 @@ impl Shape {
 pub(super) struct Directed {
     #[command(flatten)]
     io: Io,
-    /// Roughness, `X` or `X,Y`; several are answered in turn.
+    /// Roughness, `X` or `X,Y`; repeat it for more.
     #[arg(long, value_name = "X[,Y]", value_parser = sigma, conflicts_with = "input",
           required_unless_present = "input")]
     sigma: Vec<[f64; 2]>,
     #[command(flatten)]
     shape: Shape,
     /// Polar angle of the direction, from the macro normal: 0 to pi/2, or to 90 with --degrees;
-    /// several are answered in turn, and some from the normal to near the horizon if absent.
+    /// repeat it for more; some from the normal to near the horizon if absent.
     #[arg(long, value_name = "T", value_parser = finite, conflicts_with = "input")]
     theta: Vec<f64>,
     /// Azimuth of the direction, from the x axis.
@@ -144,9 +144,9 @@ fn pair(text: &str) -> Result<[f64; 2]> {
 pub(super) struct Average {
     #[command(flatten)]
     io: Io,
-    /// Roughness; several are answered in turn.
-    #[arg(long, value_name = "X", value_parser = finite, conflicts_with = "input",
-          required_unless_present = "input")]
+    /// Roughnesses, comma separated.
+    #[arg(long, value_name = "X,...", value_delimiter = ',', value_parser = finite,
+          conflicts_with = "input", required_unless_present = "input")]
     sigma: Vec<f64>,
     #[command(flatten)]
     shape: Shape,
@@ -190,8 +190,8 @@ impl Points for Average {
 pub(super) struct Directional {
     #[command(flatten)]
     lobe: Average,
-    /// Cosine of the view's polar angle, in [0, 1]; several are answered in turn.
-    #[arg(long, value_name = "C", value_parser = finite,
+    /// Cosines of the view's polar angle, in [0, 1], comma separated.
+    #[arg(long, value_name = "C,...", value_delimiter = ',', value_parser = finite,
           default_values_t = [1.0, 0.8, 0.6, 0.4, 0.2, 0.05], conflicts_with = "input")]
     cos_theta: Vec<f64>,
 }
