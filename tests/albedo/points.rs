@@ -139,7 +139,7 @@ fn fit_speaks_in_the_unit_of_its_input_and_names_the_file() {
         (rows, "line 2: the angle 2 must be in [0, pi/2"),
         ("D,theta\n9,0\n", "line 1: the columns are `D` and `theta`"),
         ("0,1\r\r\r0.1,x\r", "line 4: `x`"),
-        ("0,1\n", "1 rows"),
+        ("0,1\n", "a distribution needs at least 3 rows, not 1"),
         // Too narrow for any lobe.
         ("0,1\n1e-300,1\n2e-300,0", "D is too large or too small"),
     ];
