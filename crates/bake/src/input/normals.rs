@@ -159,7 +159,7 @@ mod tests {
         degrees("0,1\n30,1\n29,1", &["line 3: the angle 29 must be more than 30"]);
         let gap = "0,1\n1,1\n2,1\n3,1\n\n40,1\n41,1";
         degrees(gap, &["line 6: no row between the angles 3 and 40 (degrees)"]);
-        radians("", &["0 rows"]);
+        radians("", &["3 rows, not 0"]);
         radians("0,0\n0.1,0\n0.2,0", &["D is zero"]);
         radians("0,1\n\n\"0.1,1\n0.2,1", &["line 3: a quote"]);
     }
