@@ -16,8 +16,10 @@ use microfacet_baker::distribution::{DistributionKind, Named};
 use microfacet_baker::progress::Stage;
 use microfacet_baker::store;
 use microfacet_fit::convert::Target;
-use microfacet_model::fresnel::schlick_weight;
-use microfacet_model::{AlbedoIntegrator, MicrofacetDistribution as _, Shape, StudentT};
+use microfacet_model::{
+    AlbedoIntegrator, MicrofacetDistribution as _, Shape, SignedSlope, StudentT, UnitView,
+    VisibleSlope,
+};
 use microfacet_report::plot::{Axis, Curve, Dash, Figure, Key, Panel, shape_name};
 use microfacet_sampler::{Masking, MicrofacetDistribution as _, Tables};
 use microfacet_tables::{Kind, Quantity};
@@ -128,27 +130,16 @@ fn masking() -> Result<Figure, Box<dyn std::error::Error>> {
     ]))
 }
 
-/// The density of the tilts towards the view of visible normals, for each degree. In slopes along
-/// the view it is that of all facets times the projection that the view sees; of all facets it is
-/// a Student-t with one degree of freedom more, in a dimension less.
+/// The density of the tilts towards the view of visible normals, for each degree.
 fn facing(lobe: &StudentT, view: f64, degrees: f64) -> f64 {
+    let (shape, sigma) = (lobe.shape(), lobe.sigma_x());
     let (v, tilt) = (at(view), degrees.to_radians());
-    let (slope, cos) = (-tilt.tan(), tilt.cos());
-    let projected = (v.z - v.x * slope).max(0.0) / v.z;
-    let p2 = marginal(lobe, slope);
-    lobe.g1(v) * projected * p2 / (cos * cos) * PI / 180.0
-}
-
-/// The density of one slope.
-fn marginal(lobe: &StudentT, slope: f64) -> f64 {
-    let (sigma, gamma) = (lobe.sigma_x(), lobe.shape().gamma());
-    let x = slope / sigma;
-    if gamma == f64::INFINITY {
-        return (-x * x).exp() / (PI.sqrt() * sigma);
-    }
-    let nu = gamma - 1.0;
-    let of_sum = libm::lgamma(nu + 0.5) - libm::lgamma(nu);
-    (of_sum - (nu + 0.5) * (x * x / nu).ln_1p()).exp() / ((PI * nu).sqrt() * sigma)
+    let seen = VisibleSlope::new(shape, UnitView::from_cotangent(v.z / v.x / sigma));
+    let x = tilt.tan() / sigma;
+    let slope = SignedSlope { w: shape.asinh_slope(x.abs()), sign: x.signum() };
+    // From w to the unit slope x, and from there to degrees.
+    let unit = seen.density(slope) / (1.0 + shape.s() * x * x).sqrt();
+    unit / (sigma * tilt.cos().powi(2)) * PI / 180.0
 }
 
 /// A histogram of the tilts of normals towards the view, at the middles of its bins.
@@ -224,10 +215,9 @@ fn certified() -> Result<Figure, Box<dyn std::error::Error>> {
                 let table = tables.albedo(sigma, gamma, masking)?;
                 let mut worst = 0.0_f64;
                 for &cos in &cosines {
-                    let schlick = |cos| [1.0 - schlick_weight(cos), schlick_weight(cos)];
-                    let [scale, bias] = model.reflection(sigma, cos, schlick)?.of(masking);
+                    let [e] = model.reflection(sigma, cos, |_| [1.0])?.of(masking);
                     let v = DVec3::new(((1.0 - cos) * (1.0 + cos)).sqrt(), 0.0, cos).as_vec3();
-                    worst = worst.max((f64::from(table.albedo(v)) - scale - bias).abs());
+                    worst = worst.max((f64::from(table.albedo(v)) - e).abs());
                 }
                 Ok((sigma, worst))
             })

@@ -109,7 +109,9 @@ pub(super) fn run(args: &Args) -> Result<()> {
 /// The columns that a quantity appends, by each method.
 fn appended(quantity: Quantity, methods: &[Method]) -> Vec<String> {
     let [_, outputs] = quantity.columns();
-    let named =
-        |method: &Method| outputs.iter().map(|stem| format!("{stem}_{}", method.name())).collect();
-    methods.iter().flat_map(|method| -> Vec<String> { named(method) }).collect()
+    let named = |method: &Method| {
+        let end = method.name();
+        outputs.iter().map(move |stem| format!("{stem}_{end}"))
+    };
+    methods.iter().flat_map(named).collect()
 }

@@ -10,7 +10,7 @@ use microfacet_baker::progress::Meter;
 use microfacet_baker::scene::Scene as Materials;
 use microfacet_baker::table_set::{Settings, Target, bake_with};
 use microfacet_baker::table_spec::Quality;
-use microfacet_report::plot::{Content, Sheet, Tile};
+use microfacet_report::plot::{Content, Sheet, Tile, shape_name};
 use microfacet_sampler::{
     AnyBsdf, BindError, BsdfSettings, Compensation, Conductor, ConductorFresnel, Dielectric,
     Masking, Metal, Plastic, Tables,
@@ -231,14 +231,12 @@ fn energy(tables: &Tables) -> Result<Spheres, BindError> {
 /// Shapes of one roughness, so that the core of the highlight is the same and the tail is not.
 fn tails(tables: &Tables) -> Result<Spheres, BindError> {
     const SIGMA: f64 = 0.1;
-    let shapes =
-        [(1.6, "γ = 1.6"), (2.0, "γ = 2, GGX"), (4.0, "γ = 4"), (f64::INFINITY, "γ = ∞, Beckmann")];
-    let gold = |(gamma, _)| {
+    let shapes = [1.6, 2.0, 4.0, f64::INFINITY];
+    let gold = |gamma| {
         let lobe = tables.lobe(SIGMA, gamma)?;
         under(Sky::one_lamp(), Conductor::new(lobe, Metal::Gold, BsdfSettings::new())?, GREY)
     };
     let rows = vec![row("Gold".into(), &shapes, gold)?];
     let groups = vec![(shapes.len(), format!("one roughness, σ = {SIGMA}"))];
-    let columns = shapes.map(|(_, heading)| heading.into());
-    Ok(Spheres::new(groups, columns.into(), rows, false))
+    Ok(Spheres::new(groups, shapes.map(shape_name).into(), rows, false))
 }

@@ -15,6 +15,14 @@ struct Lamp {
     radiance: Vec3,
 }
 
+impl Lamp {
+    /// A disc of this radius in degrees.
+    fn new(towards: Vec3, degrees: f32, radiance: Vec3) -> Self {
+        let height = 1.0 - degrees.to_radians().cos();
+        Self { towards: towards.normalize(), height, radiance }
+    }
+}
+
 /// A smooth sky, and lamps that a renderer samples; all light comes from infinity.
 pub struct Sky {
     zenith: Vec3,
@@ -36,25 +44,20 @@ impl Sky {
 
     /// A studio: a large warm lamp in front, a cold one behind.
     pub fn studio() -> Self {
-        let lamp = |towards: Vec3, degrees: f32, radiance| {
-            let height = 1.0 - degrees.to_radians().cos();
-            Lamp { towards: towards.normalize(), height, radiance }
-        };
         Self {
             zenith: Vec3::new(0.28, 0.3, 0.35),
             horizon: Vec3::splat(0.55),
             lamps: vec![
-                lamp(Vec3::new(-0.6, 0.8, 0.65), 20.0, Vec3::new(7.0, 6.6, 5.8)),
-                lamp(Vec3::new(0.85, 0.45, -0.55), 20.0, Vec3::new(2.9, 3.3, 4.2)),
+                Lamp::new(Vec3::new(-0.6, 0.8, 0.65), 20.0, Vec3::new(7.0, 6.6, 5.8)),
+                Lamp::new(Vec3::new(0.85, 0.45, -0.55), 20.0, Vec3::new(2.9, 3.3, 4.2)),
             ],
         }
     }
 
-    /// One small lamp in a dark room, where the tail of a lobe stands out.
+    /// One small lamp in a dark room, where the tail of a lobe stands out: it lights about as much
+    /// as the large one of the studio, and is thousands of times as bright as the room.
     pub fn one_lamp() -> Self {
-        let towards = Vec3::new(-0.45, 0.75, 0.75).normalize();
-        let height = 1.0 - 4.0_f32.to_radians().cos();
-        let lamp = Lamp { towards, height, radiance: Vec3::splat(150.0) };
+        let lamp = Lamp::new(Vec3::new(-0.45, 0.75, 0.75), 4.0, Vec3::splat(150.0));
         Self { zenith: Vec3::splat(0.02), horizon: Vec3::splat(0.03), lamps: vec![lamp] }
     }
 
