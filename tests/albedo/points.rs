@@ -96,6 +96,17 @@ fn query_reads_degrees_and_doubts_them() {
 }
 
 #[test]
+fn points_of_query_are_printed_with_the_unit_of_their_angles() {
+    let folder = tempfile::tempdir().unwrap();
+    let lobe = ["query", "g1", "--sigma", "0.5", "--gamma", "2", "--method", "exact"];
+    let printed = |more: &[&str]| ok(folder.path(), &[&lobe, more].concat());
+    let text = printed(&["--theta", "60", "--degrees"]);
+    assert!(text.contains(", theta = 60 degrees, phi = 0 degrees\n\nmethod  lambda"), "{text}");
+    let text = printed(&["--theta", "0.5", "--theta", "1"]);
+    assert!(text.contains(", phi = 0 radians\n\ntheta [radians]  method"), "{text}");
+}
+
+#[test]
 fn query_names_standard_input() {
     let folder = tempfile::tempdir().unwrap();
     for (text, why) in [("a\n", "no column"), ("", "it is empty"), (HEADER, "")] {

@@ -238,9 +238,17 @@ pub(super) fn answer(
     }
     let varies = |i: usize| fields.iter().any(|row| row[i] != fields[0][i]);
     let (across, fixed): (Vec<_>, Vec<_>) = (0..inputs.len()).partition(|&i| varies(i));
-    let fixed = fixed.iter().map(|&i| format!("{} = {}", inputs[i], fields[0][i]));
-    let head = across.iter().map(|&i| inputs[i]).chain(["method"]).chain(outputs.iter().copied());
-    let mut lines = vec![head.map(String::from).collect::<Vec<_>>()];
+    let unit = |i: usize| ["theta", "phi"].contains(&inputs[i]).then(|| known.angles());
+    let fixed = fixed.iter().map(|&i| {
+        let unit = unit(i).map_or(String::new(), |unit| format!(" {unit}"));
+        format!("{} = {}{unit}", inputs[i], fields[0][i])
+    });
+    let head = across.iter().map(|&i| match unit(i) {
+        Some(unit) => format!("{} [{unit}]", inputs[i]),
+        None => inputs[i].to_owned(),
+    });
+    let head = head.chain(["method"].iter().chain(outputs).map(ToString::to_string));
+    let mut lines = vec![head.collect::<Vec<_>>()];
     for (row, answers) in fields.iter().zip(answers) {
         for (method, values) in io.method.iter().zip(answers) {
             let at = across.iter().map(|&i| row[i]).chain([method.name()]).map(String::from);

@@ -65,6 +65,11 @@ impl Known {
         Self { quantity, unit, set, integrators: Mutex::default() }
     }
 
+    /// The name of the unit of angles.
+    pub(super) fn angles(&self) -> &'static str {
+        self.unit.angles().name()
+    }
+
     /// The quantity at the point of a row, in the columns that it appends.
     pub(super) fn values(&self, fields: &[&str], method: Method) -> Result<Vec<String>> {
         match self.quantity {
