@@ -3,6 +3,8 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { difference, launch, open, settled } from './harness.mjs';
+import { layout } from './layout.mjs';
+import { shownText } from './structure.mjs';
 
 let browser;
 before(async () => (browser = await launch()));
@@ -128,6 +130,8 @@ test('pictures stand for the sphere while its context is lost, and then it is ba
     for (const gone of ['#sphere', '#sphere-controls', '#lobe-live']) {
         assert.equal(await page.locator(gone).isVisible(), false, gone);
     }
+    await page.evaluate(shownText);
+    assert.deepEqual(await page.evaluate(layout, { touch: false }), []);
     // What other pages of the history ask for, and what is asked of a lost context.
     await page.evaluate(() => { location.hash = '#gamma=5&sigma=0.2'; });
     assert.equal(await page.evaluate(() => report.pixels()), null);

@@ -10,7 +10,7 @@ import { file } from './files.mjs';
 export const FOLDER = process.env.PAGES ?? '.';
 
 /// The pages that `run` writes, without `.html`.
-export const PAGES = ['default', 'gold', 'brushed', 'images', 'ggx', 'tilted'];
+export const PAGES = ['default', 'gold', 'demo', 'brushed', 'images', 'ggx', 'tilted'];
 
 /// WebGL by software, which every machine has; and nothing that calls elsewhere.
 const FLAGS = [

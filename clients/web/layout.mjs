@@ -1,7 +1,7 @@
 // How a page lies on a screen or on paper. Each function runs in the page, after `shownText`, and
 // returns what it found wrong, in words.
 
-/// Nothing is beyond the page, cut, on top of other text, too small to read or to touch.
+/// Nothing is beyond the page, cut, squeezed, on top of other text, too small to read or to touch.
 export function layout({ touch }) {
     const found = [];
     const words = element => {
@@ -50,6 +50,14 @@ export function layout({ touch }) {
                     found.push(`cut by its figure by ${over.toFixed(1)}: "${text.textContent}"`);
                 }
             }
+        }
+    }
+    // A sentence has the width that there is, and not one column of a grid.
+    for (const element of document.querySelectorAll('p, figcaption')) {
+        const { width, height } = element.getBoundingClientRect();
+        const room = element.parentElement.clientWidth;
+        if (element.checkVisibility() && width < room / 2 && height > width && width > 2) {
+            found.push(`squeezed to ${width.toFixed(0)} of ${room} pixels: ${words(element)}`);
         }
     }
     // An input that is not seen lies over what is shown for it.
@@ -147,9 +155,19 @@ export function ring() {
     return [];
 }
 
-/// On paper: pictures are there, and what must not be divided is asked to stay whole and fits.
+/// On paper: pictures are there, what must not be divided is asked to stay whole and fits, and
+/// figures are not drawn larger than their letters ask for.
 export function printed({ pageHeight }) {
     const found = [];
+    const body = parseFloat(getComputedStyle(document.body).fontSize);
+    for (const text of document.querySelectorAll('svg text')) {
+        const { a, b } = text.getScreenCTM() ?? { a: 0, b: 0 };
+        const size = parseFloat(getComputedStyle(text).fontSize) * Math.hypot(a, b);
+        if (text.checkVisibility() && size > 1.5 * body) {
+            const large = (size / body).toFixed(1);
+            found.push(`letters of ${large} times those of the page: "${text.textContent}"`);
+        }
+    }
     for (const element of document.querySelectorAll('figure, img, svg, tr')) {
         if (!element.checkVisibility()) {
             continue;

@@ -60,7 +60,7 @@ async function shoot(page, name) {
 /// A4 with margins of 12 mm, in pixels.
 const SHEET = { width: 703, height: 1032 };
 
-for (const name of ['default', 'gold']) {
+for (const name of ['default', 'gold', 'demo']) {
     test(`${name}: is printed with its pictures, on light paper`, async t => {
         const { page, troubles } = await open(t, browser, name, { scheme: 'dark' });
         await settled(page, look);

@@ -99,6 +99,7 @@ const MUTANTS = [
     ['<p id="words">', '<p style="width: 60px; height: 9px; overflow: hidden">', /cut: p/],
     ['x="5" y="20"', 'x="90" y="20"', /cut by its figure/],
     ['<p id="words">', '<p style="position: relative; top: 80px">', /overlap/],
+    ['<p id="words">', `<p style="width: 50px">${'Words and '.repeat(9)}`, /squeezed to 50 of/],
     ['class="reader"', 'style="position: absolute; left: -50rem"', /beyond the page: h3/],
     ['<p id="words">', '<p style="position: relative; z-index: 1; top: 120px">', /overlap.* img/],
     ['<p id="words">', '<p style="font-size: 7px">', /letters of 7/],
@@ -110,6 +111,7 @@ const MUTANTS = [
     ['light-dark(#111,#eee)', '#bbb', /contrast/],
     ['figure { break-inside: avoid;', 'figure {', /may be divided/],
     ['alt="a dot"', 'alt="a dot" style="width: 20px; height: 1200px"', /taller than a sheet/],
+    ['font-size="12"', 'font-size="25"', /letters of 1\.6 times those of the page: "text"/],
     ['@media print { input { display: none; }', '@media print {', /a control on paper: sigma/],
     ['button { display: contents; }', '', /a control on paper: button/],
 ];
