@@ -6,6 +6,7 @@ mod common;
 mod export;
 mod export_lut;
 mod layouts;
+mod shaders;
 
 use std::path::Path;
 

@@ -3,6 +3,8 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod budgets;
+mod cached;
 mod error_maps;
 mod haze;
 mod max_bytes;

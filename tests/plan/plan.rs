@@ -1,4 +1,4 @@
-//! Planning, the cache and error budgets: only what a scene needs is baked, and nothing twice.
+//! Planning: only what a scene needs is baked.
 
 use glam::Vec3;
 use microfacet_baker::cache::Cache;
@@ -7,48 +7,46 @@ use microfacet_baker::scene::Scene;
 use microfacet_baker::table_set::{BakeError, Baked, Settings, Target, bake_with, costs};
 use microfacet_baker::table_spec::{Quality, general_set};
 use microfacet_sampler::lobe::Tabulated;
-use microfacet_sampler::{DEFAULT_SET as GENERAL, Lobe, Masking, MicrofacetDistribution, Tables};
-use microfacet_tables::{
-    Axis, Certificate, Interval, Precision, Provenance, Quantity, Table, decode, encode,
-};
+use microfacet_sampler::{DEFAULT_SET as GENERAL, Lobe, MicrofacetDistribution, Tables};
+use microfacet_tables::{Interval, Precision, encode};
 
 use crate::common::{json, ok, refused, run};
 
 pub(crate) const DRAFT: Target = Target::Quality(Quality::Draft, Precision::F32);
 
 /// A recipe of materials: name, σ and γ as TOML.
-fn recipe(materials: &[[&str; 3]]) -> String {
+pub(crate) fn recipe(materials: &[[&str; 3]]) -> String {
     let entry = |[name, sigma, gamma]: &[&str; 3]| {
         format!("[[material]]\nname = \"{name}\"\nsigma = {sigma}\ngamma = {gamma}\n")
     };
     materials.iter().map(entry).collect()
 }
 
-fn scene(materials: &[[&str; 3]]) -> Scene {
+pub(crate) fn scene(materials: &[[&str; 3]]) -> Scene {
     Scene::from_recipe_str(&recipe(materials)).unwrap()
 }
 
-fn plan(scene: &Scene) -> Plan {
+pub(crate) fn plan(scene: &Scene) -> Plan {
     Plan::new(scene, Options::default()).unwrap()
 }
 
-fn bake(plan: &Plan, target: Target, cache: &Cache) -> Result<Baked, BakeError> {
+pub(crate) fn bake(plan: &Plan, target: Target, cache: &Cache) -> Result<Baked, BakeError> {
     bake_with(&normals_of(plan), target, Settings { cache: cache.clone(), ..Settings::default() })
 }
 
 /// The plan without its albedos, which take long.
-fn normals_of(plan: &Plan) -> Plan {
+pub(crate) fn normals_of(plan: &Plan) -> Plan {
     let mut plan = plan.clone();
     plan.albedos.clear();
     plan
 }
 
-fn bytes(set: &Tables) -> Vec<u8> {
+pub(crate) fn bytes(set: &Tables) -> Vec<u8> {
     encode(set.provenance(), set.tables()).unwrap()
 }
 
 /// The largest error of any table.
-fn worst(set: &Tables) -> f64 {
+pub(crate) fn worst(set: &Tables) -> f64 {
     set.tables().iter().map(|table| table.certificate.worst()).fold(0.0, f64::max)
 }
 
@@ -203,173 +201,6 @@ fn estimated_bytes_are_those_of_the_file() {
 }
 
 /// An entry that has its key right is compared with what was asked for: all but the numbers.
-#[test]
-fn a_cache_entry_with_other_tables_is_baked_again() {
-    let folder = tempfile::tempdir().unwrap();
-    let recipe = recipe(&[["glass", "0.3", "3.0"]])
-        + "[[material]]\nname = \"cloth\"\ndistribution = \"gauss\"\nm = 0.25\n"
-        + "[[material]]\nname = \"coat\"\nsigma = { min = 0.2, max = 0.25 }\ngamma = 3.0\n"
-        + "fresnel = { schlick = 0.04 }\n";
-    let plan = plan(&Scene::from_recipe_str(&recipe).unwrap());
-    let cache = Cache::new(folder.path().into());
-    let bake = || {
-        let settings = Settings { cache: cache.clone(), ..Settings::default() };
-        bake_with(&plan, DRAFT, settings).unwrap()
-    };
-    let genuine = bake();
-    assert_eq!(bake().baked, 0);
-    let mut entries: Vec<_> =
-        std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    entries.sort();
-    assert_eq!(entries.len(), 3, "normals, a distribution, and albedos");
-    type Forgery = fn(&mut Provenance, &mut Vec<Table>);
-    let forgeries: [(&str, Forgery); 10] = [
-        ("numerics", |origin, _| origin.numerics -= 1),
-        ("none", |_, tables| tables.clear()),
-        ("one too many", |_, tables| tables.push(tables[0].clone())),
-        ("order", |_, tables| tables.reverse()),
-        ("name", |_, tables| tables[0].name = "../../evil".into()),
-        ("shape or lobe", |_, tables| {
-            let lobe = &mut tables[0].subject.lobe;
-            match &mut lobe.distribution {
-                Some(label) => *label = "gtr:1.5".into(),
-                None => lobe.gamma = Interval::point(5.0),
-            }
-        }),
-        ("masking", |_, tables| tables[0].subject.masking = Some(Masking::Uncorrelated)),
-        ("axis", |_, tables| {
-            let axis = tables[0].axes.pop().unwrap();
-            let nodes = axis.nodes.iter().copied().step_by(2).collect();
-            tables[0].axes.push(Axis { nodes, ..axis });
-            let count = tables[0].shape().iter().product();
-            tables[0].values.truncate(count);
-        }),
-        ("precision", |_, tables| tables[0] = tables[0].clone().rounded(Precision::U16)),
-        ("certificate", |_, tables| tables[0].certificate = Certificate::default()),
-    ];
-    let mut forged_entries = 0;
-    for path in &entries {
-        let file = std::fs::read(path).unwrap();
-        for (what, forge) in forgeries {
-            let (mut origin, mut tables) = decode(&file, true).unwrap();
-            forge(&mut origin, &mut tables);
-            let Ok(forged) = encode(&origin, &tables) else { continue };
-            forged_entries += 1;
-            assert!(forged != file, "{what}");
-            std::fs::write(path, forged).unwrap();
-            let again = bake();
-            assert!(again.baked > 0, "{what}: {}", tables.first().map_or("", |table| &table.name));
-            assert!(bytes(&again.set) == bytes(&genuine.set), "{what}");
-            assert!(std::fs::read(path).unwrap() == file, "{what}: the entry is mended");
-        }
-    }
-    // The others are no sets.
-    assert_eq!(forged_entries, 22);
-}
-
-#[test]
-fn what_is_finished_is_not_baked_again() {
-    let folder = tempfile::tempdir().unwrap();
-    let cache = Cache::new(folder.path().join("cache"));
-    let two = [["a", "0.3", "3.0"], ["b", "0.3", "4.0"]];
-    for precision in [Precision::F32, Precision::F16, Precision::U16] {
-        let target = Target::Quality(Quality::Draft, precision);
-        let first = bake(&plan(&scene(&two)), target, &cache).unwrap();
-        let second = bake(&plan(&scene(&two)), target, &cache).unwrap();
-        assert_eq!((first.baked, second.baked), (6, 0));
-        assert!(
-            bytes(&first.set) == bytes(&second.set),
-            "{precision:?}: kept tables give another file"
-        );
-    }
-    // Another shape is baked alone; another roughness is not even a change.
-    let other =
-        bake(&plan(&scene(&[["a", "0.9", "3.0"], ["b", "0.3", "4.5"]])), DRAFT, &cache).unwrap();
-    assert_eq!(other.baked, 3);
-    // A damaged entry is baked again, and so is one that lies about what it is.
-    let entries = || {
-        std::fs::read_dir(folder.path().join("cache")).unwrap().map(|entry| entry.unwrap().path())
-    };
-    let all: Vec<_> = entries().collect();
-    assert_eq!(all.len(), 7);
-    let genuine = std::fs::read(&all[0]).unwrap();
-    all.iter().for_each(|path| std::fs::write(path, &genuine).unwrap());
-    std::fs::write(&all[0], &genuine[..genuine.len() / 2]).unwrap();
-    let again = bake(&plan(&scene(&two)), DRAFT, &cache).unwrap();
-    assert_eq!(again.baked, 6);
-    assert_eq!(bake(&plan(&scene(&two)), DRAFT, &cache).unwrap().baked, 0);
-}
-
-#[test]
-fn an_error_budget_is_met_by_less() {
-    let plan = plan(&scene(&[["glass", "0.454", "3.0"]]));
-    let at = |target| bake(&plan, target, &Cache::none()).unwrap().set;
-    let default = at(Target::Quality(Quality::Default, Precision::F32));
-    let mut before = bytes(&default).len();
-    for max_error in [1e-4, 1e-3, 1e-2] {
-        let set = at(Target::MaxError(max_error));
-        assert!(worst(&set) <= max_error, "{max_error}: {}", worst(&set));
-        let size = bytes(&set).len();
-        assert!(size < before, "{size} bytes for an error of {max_error}, {before} for less");
-        // The certificates hold for the set that a reader gets.
-        assert_eq!(Tables::from_bytes(&bytes(&set)).unwrap(), set);
-        before = size;
-    }
-    let error = bake(&plan, Target::MaxError(1e-12), &Cache::none()).unwrap_err().to_string();
-    assert!(error.contains("1e-12") && error.contains("reaches"), "{error}");
-    for nonsense in [0.0, -1e-4, f64::NAN] {
-        let error =
-            bake(&plan, Target::MaxError(nonsense), &Cache::none()).unwrap_err().to_string();
-        assert!(error.contains("above 0"), "{error}");
-    }
-}
-
-#[test]
-fn budgets_of_the_general_set_end() {
-    let plan = normals_of(&Plan::general());
-    let met = bake(&plan, Target::MaxError(2e-3), &Cache::none()).unwrap().set;
-    assert!(met.tables().len() == 5 && worst(&met) <= 2e-3, "{}", worst(&met));
-    let filled = bake(&plan, Target::MaxBytes(100_000), &Cache::none()).unwrap().set;
-    assert!(bytes(&filled).len() <= 100_000);
-    // With more bytes than that error takes, the error is less.
-    assert!(bytes(&met).len() < 100_000 && worst(&filled) < worst(&met), "{}", worst(&filled));
-    // Masking that peeling uses is as fine as what it is peeled from requires.
-    let peeled = |name: &str| filled.tables().iter().find(|table| table.name == name).unwrap();
-    assert!(
-        peeled("shadowing_peeled").certificate.error(Quantity::G1).unwrap() < 0.1 * worst(&filled)
-    );
-}
-
-#[test]
-fn what_would_take_long_says_so_before_anything_is_baked() {
-    for target in [Target::MaxError(1e-5), Target::MaxBytes(20_000_000)] {
-        let settings = Settings::default();
-        let progress = settings.progress.clone();
-        let refused = bake_with(&Plan::general(), target, settings).unwrap_err();
-        assert_eq!(progress.share(), 0.0, "it was begun");
-        let BakeError::TooSlow { search, default_seconds } = refused else { panic!("{refused}") };
-        assert!(search > 3.0 * default_seconds && default_seconds > 1.0, "{refused}");
-    }
-    let folder = tempfile::tempdir().unwrap();
-    let message = refused(folder.path(), &["bake", "--max-error", "1e-5", "--out", "out"]);
-    assert!(message.contains("--patient") && message.contains(" s"), "{message}");
-    assert!(!folder.path().join("out/tables.safetensors").exists());
-}
-
-#[test]
-fn a_byte_budget_is_filled_and_not_exceeded() {
-    let plan = plan(&scene(&[["glass", "0.454", "3.0"]]));
-    let at = |max_bytes| bake(&plan, Target::MaxBytes(max_bytes), &Cache::none());
-    let [small, large] = [5_000, 8_000].map(|limit| {
-        let set = at(limit).unwrap().set;
-        assert!(bytes(&set).len() <= limit);
-        set
-    });
-    assert!(worst(&large) < worst(&small));
-    let error = at(2_000).unwrap_err().to_string();
-    assert!(error.contains("2000 bytes"), "{error}");
-}
-
 /// Coated and metallic GGX at five roughnesses, as an architectural scene has them, and materials
 /// that need no table.
 const PAVILION: &str = r#"
