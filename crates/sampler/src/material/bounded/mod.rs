@@ -15,20 +15,22 @@
 //!
 //! [`upward`]: super::upward
 
+mod limits;
+mod narrowed;
+
 use alloc::vec::Vec;
 
 use glam::Vec3;
 use microfacet_core::math::unit;
 use microfacet_core::{Masking, Roughness};
-use microfacet_lanes::{Ints, Lanes, Work, f32x4, widest};
-use microfacet_tables::axis::hermite::split;
+use microfacet_lanes::{Lanes, f32x4, widest};
 
 use super::batch::Batch;
 use super::delegate::{by_ref, forward, unbounded};
 use super::distribution::{Facet, MicrofacetDistribution};
 use super::key::LobeKey;
 use super::lanes::first_three;
-use super::lanes::many::{components, sample_general};
+use super::lanes::many::sample_general;
 use super::lanes::one::draw;
 use super::lanes::views::{View, Views};
 use super::reflecting::Reflecting;
@@ -36,21 +38,11 @@ use super::slices::Slices;
 use super::student_t::{StudentT, StudentTRef};
 use super::surface::{Scales, Shapes, Surface};
 use super::tabulated::Tabulated;
-use super::upward::{SLACK, ends, lost_above};
+use super::upward::{ends, lost_above};
 use crate::error::{BatchError, same_lengths};
 use crate::vector::vec3;
-
-/// Cells of the slope x : z by x/(|x| + z), over [−1, 1], and rows of the table between two rows of
-/// limits.
-const CELLS: usize = 64;
-const SHARED: usize = 4;
-/// Steps between two nodes of the limits at which they are compared with the numbers they enclose.
-const BETWEEN: usize = 2;
-
-/// How far a limit is moved beyond the number that it must enclose, so that neither rounding nor
-/// the range between the compared points loses a direction: a share of the largest error of
-/// interpolation near it, and [`SLACK`].
-const MARGIN: f64 = 0.5;
+use limits::{Limits, Nodes, SHARED, limits_of};
+use narrowed::Narrowed;
 
 /// A lobe whose visible normals are drawn without most of those that reflect the view below the
 /// horizon.
@@ -89,7 +81,7 @@ pub struct Bounded {
 #[derive(Clone, Copy, Debug)]
 pub struct BoundedRef<'a> {
     lobe: StudentTRef<'a>,
-    limits: &'a [[f32; 2]],
+    limits: Limits<'a>,
 }
 
 /// The visible normals of one view without most of those that reflect it below the horizon.
@@ -105,65 +97,11 @@ impl StudentT {
     /// Prepares the visible normals of every view for reflection.
     #[must_use]
     pub fn bounded(self) -> Bounded {
-        Bounded::new(self)
+        Bounded { limits: limits_of(&self.slices), lobe: self }
     }
 }
 
 impl Bounded {
-    fn new(lobe: StudentT) -> Self {
-        let last = lobe.slices.rows;
-        // The exact numbers at all rows and, between the nodes of the limits, some slopes.
-        let fine = BETWEEN * CELLS;
-        let numbers = |row: usize| -> Vec<f64> {
-            let rows = lobe.slices.one_row(row);
-            let at = |i: usize| {
-                let x = -1.0 + i as f64 * (2.0 / fine as f64);
-                lobe.slices.number_along(&rows, x, 1.0 - x.abs())
-            };
-            (0..=fine).map(at).collect()
-        };
-        let numbers: Vec<_> = (0..=last).map(numbers).collect();
-        let groups = last.div_ceil(SHARED);
-        let row_of = |group: usize| (group * SHARED).min(last);
-        let node = |group: usize, cell: usize| numbers[row_of(group)][BETWEEN * cell];
-        // The largest errors of interpolation above and below the numbers of a cell.
-        let strays = |group: usize, cell: usize| {
-            let (mut above, mut below) = (0.0_f64, 0.0_f64);
-            let rows = &numbers[row_of(group)..=row_of(group + 1)];
-            for (row, numbers) in rows.iter().enumerate() {
-                let w = row as f64 / SHARED as f64;
-                for i in 0..=BETWEEN {
-                    let t = i as f64 / BETWEEN as f64;
-                    let along = |g: usize| (1.0 - t) * node(g, cell) + t * node(g, cell + 1);
-                    let strayed = (1.0 - w) * along(group) + w * along(group + 1)
-                        - numbers[BETWEEN * cell + i];
-                    (above, below) = (above.max(strayed), below.max(-strayed));
-                }
-            }
-            [above, below]
-        };
-        let strays: Vec<Vec<[f64; 2]>> =
-            (0..groups).map(|g| (0..CELLS).map(|cell| strays(g, cell)).collect()).collect();
-        let limit = |group: usize, cell: usize| {
-            let near = strays[group.saturating_sub(1)..(group + 1).min(groups)]
-                .iter()
-                .flat_map(|row| &row[cell.saturating_sub(1)..(cell + 1).min(CELLS)]);
-            let [above, below] =
-                near.fold([0.0_f64; 2], |far, near| [0, 1].map(|i| far[i].max(near[i])));
-            let u = node(group, cell);
-            let beyond = |stray: f64| (1.0 + MARGIN) * stray + f64::from(SLACK);
-            [(u - beyond(above)) as f32, (u + beyond(below)) as f32]
-        };
-        // A guard: interpolation reads a row and a node beyond the last, with weight 0.
-        let rows = (0..=groups).chain([groups]);
-        let mut limits: Vec<_> = rows
-            .flat_map(|group| (0..=CELLS).map(move |cell| (group, cell)))
-            .map(|(g, c)| limit(g, c))
-            .collect();
-        limits.push([0.0, 1.0]);
-        Self { lobe, limits }
-    }
-
     /// The lobe, for evaluation.
     #[must_use]
     pub fn lobe(&self) -> &StudentT {
@@ -176,14 +114,14 @@ impl Bounded {
     #[inline(always)]
     #[must_use]
     pub fn with_roughness(&self, roughness: impl Into<Roughness>) -> BoundedRef<'_> {
-        BoundedRef { lobe: self.lobe.with_roughness(roughness), limits: &self.limits }
+        BoundedRef { lobe: self.lobe.with_roughness(roughness), limits: Limits(&self.limits) }
     }
 
     /// This lobe, borrowed.
     #[inline(always)]
     #[must_use]
     pub fn by_ref(&self) -> BoundedRef<'_> {
-        BoundedRef { lobe: self.lobe.by_ref(), limits: &self.limits }
+        BoundedRef { lobe: self.lobe.by_ref(), limits: Limits(&self.limits) }
     }
 
     /// The normals of a view.
@@ -226,7 +164,8 @@ impl<'a> BoundedRef<'a> {
         let View { rho, z, at, .. } = view;
         let sin = f32x4::splat(v.x * v.x + v.y * v.y).sqrt();
         let kept = self.kept(rho, z, sin, at, |group, cells| {
-            let limit = |i: usize| f32x4::splat(self.limit(group.first(), cells[i].first(), i));
+            let limit =
+                |i: usize| f32x4::splat(self.limits.limit(group.first(), cells[i].first(), i));
             [limit(0), limit(1)]
         });
         BoundedView { lobe: self.lobe, v, view, kept: kept.first() }
@@ -264,31 +203,6 @@ impl<'a> BoundedRef<'a> {
         Ok(())
     }
 
-    /// The limit at a view and a slope, each given as a node and the weight of the next.
-    #[inline(always)]
-    fn limit(&self, (row, w): (i32, f32), (cell, t): (i32, f32), end: usize) -> f32 {
-        const STRIDE: usize = CELLS + 1;
-        let at = row.wrapping_mul(STRIDE as i32).wrapping_add(cell) as u32 as usize;
-        // The index is out of the table only for NaN.
-        let Some(near) = self.limits.get(at..at + STRIDE + 2) else { return end as f32 };
-        let along = |i: usize| near[i][end] + t * (near[i + 1][end] - near[i][end]);
-        let (low, high) = (along(0), along(STRIDE));
-        // Clamped after interpolation: a node clamped at 0 or 1 would narrow the margin of others.
-        (low + w * (high - low)).clamp(0.0, 1.0)
-    }
-
-    /// [`limit`](Self::limit) of views in lanes, at the slopes of both ends.
-    #[inline(always)]
-    fn limits<L: Lanes>(&self, row: Nodes<L>, cells: [Nodes<L>; 2]) -> [L; 2] {
-        let (rows, w) = (row.node.to_array(), row.weight.to_array());
-        let (low, low_w) = (cells[0].node.to_array(), cells[0].weight.to_array());
-        let (high, high_w) = (cells[1].node.to_array(), cells[1].weight.to_array());
-        [
-            L::from_fn(|i| self.limit((rows[i], w[i]), (low[i], low_w[i]), 0)),
-            L::from_fn(|i| self.limit((rows[i], w[i]), (high[i], high_w[i]), 1)),
-        ]
-    }
-
     #[inline(always)]
     fn kept_of<L: Lanes>(&self, [vx, vy, vz]: [L; 3]) -> Kept<L> {
         let Surface { shape: slices, scales } = self.lobe.surface();
@@ -296,7 +210,7 @@ impl<'a> BoundedRef<'a> {
         let Views { rho, z, length, .. } = Views::new(vx * sx, vy * sy, vz);
         let [at, _] = slices.place::<true, L>(rho, z, length);
         let sin = (vx * vx + vy * vy).sqrt();
-        self.kept(rho, z, sin, at, |row, cells| self.limits(row, cells))
+        self.kept(rho, z, sin, at, |row, cells| self.limits.both(row, cells))
     }
 
     /// The numbers u₁ that hold all at which lights can be above the horizon, for views with
@@ -363,78 +277,7 @@ impl Tabulated for BoundedRef<'_> {
     }
 
     fn bytes(&self) -> usize {
-        self.lobe.bytes() + size_of_val(self.limits)
-    }
-}
-
-/// Nodes below coordinates, and the weights of the next nodes.
-#[derive(Clone, Copy)]
-struct Nodes<L: Lanes> {
-    node: L::Ints,
-    weight: L,
-}
-
-impl<L: Lanes> Nodes<L> {
-    #[inline(always)]
-    fn new(at: L) -> Self {
-        let (node, weight) = split(at);
-        Self { node, weight }
-    }
-
-    /// Of the slope x : z.
-    #[inline(always)]
-    fn of_slope([x, z]: [L; 2]) -> Self {
-        const HALF: f32 = 0.5 * CELLS as f32;
-        let length = x & !L::splat(-0.0);
-        Self::new(x * HALF / (length + z) + HALF)
-    }
-
-    #[inline(always)]
-    fn first(&self) -> (i32, f32) {
-        (self.node.to_array()[0], self.weight.to_array()[0])
-    }
-}
-
-/// Views and numbers whose intervals are not yet taken.
-struct Narrowed<'a, V> {
-    lobe: BoundedRef<'a>,
-    v: &'a [V],
-    u: &'a [[f32; 2]],
-    numbers: &'a mut [[f32; 2]],
-    share: &'a mut [f32],
-}
-
-impl<V: Copy + Into<[f32; 3]>> Narrowed<'_, V> {
-    /// Takes those of all views but those too few to fill lanes, which are left.
-    #[inline(always)]
-    fn groups<L: Lanes>(self) -> Self {
-        let Self { lobe, v, u, numbers, share } = self;
-        let whole = v.len() - v.len() % L::WIDTH;
-        let (v, v_rest) = v.split_at(whole);
-        let (u, u_rest) = u.split_at(whole);
-        let (n, n_rest) = numbers.split_at_mut(whole);
-        let (s, s_rest) = share.split_at_mut(whole);
-        let inputs = v.chunks_exact(L::WIDTH).zip(u.chunks_exact(L::WIDTH));
-        let outputs = n.chunks_exact_mut(L::WIDTH).zip(s.chunks_exact_mut(L::WIDTH));
-        for ((v, u), (n, s)) in inputs.zip(outputs) {
-            let kept = lobe.kept_of(components::<L, V>(v));
-            s.copy_from_slice(kept.share.to_array().as_ref());
-            let (from, end, gap) = (kept.from.to_array(), kept.end.to_array(), kept.gap.to_array());
-            for i in 0..L::WIDTH {
-                let kept = Kept { from: from[i], share: s[i], end: end[i], gap: gap[i] };
-                n[i] = [kept.number(u[i][0]), u[i][1]];
-            }
-        }
-        Self { lobe, v: v_rest, u: u_rest, numbers: n_rest, share: s_rest }
-    }
-}
-
-impl<V: Copy + Into<[f32; 3]>> Work for Narrowed<'_, V> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn run<L: Lanes>(self) -> Self {
-        self.groups::<L>()
+        self.lobe.bytes() + size_of_val(self.limits.0)
     }
 }
 
@@ -514,38 +357,5 @@ impl BoundedView<'_> {
         let u = [self.kept.number(u[0]), u[1]];
         let (m, density) = self.lobe.sample_with_table_pdf(self.v, u);
         (m, density / self.kept.share)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::Tables;
-
-    #[test]
-    fn limits_enclose_the_numbers_between_their_nodes() {
-        let (mut excess, mut count) = (0.0, 0);
-        for gamma in [1.501, 1.6, 1.9, 3.0, f64::INFINITY] {
-            let bounded = Tables::embedded().student_t(0.5, gamma).unwrap().bounded();
-            let lobe = bounded.lobe();
-            let rows = lobe.slices.rows as f32;
-            for i in 0..331 {
-                let at = rows * i as f32 / 330.0;
-                let table = lobe.slices.rows_at(at).unwrap();
-                let view = Nodes::new(f32x4::splat(at / SHARED as f32)).first();
-                for j in 0..=500 {
-                    let x = -1.0 + j as f32 / 250.0;
-                    let exact = lobe.slices.number_along(&table, x.into(), (1.0 - x.abs()).into());
-                    let half = 0.5 * CELLS as f32;
-                    let slope = Nodes::new(f32x4::splat(x * half + half)).first();
-                    let [low, high] =
-                        [0, 1].map(|end| f64::from(bounded.by_ref().limit(view, slope, end)));
-                    assert!(low <= exact && exact <= high, "{gamma} {at} {x}: {low} {exact}");
-                    (excess, count) = (excess + (high - low), count + 1);
-                }
-            }
-        }
-        // The intervals are not much longer than needed.
-        assert!(excess / f64::from(count) < 1e-3, "{}", excess / f64::from(count));
     }
 }
